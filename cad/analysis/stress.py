@@ -1,8 +1,8 @@
 """The greatest stress of a loaded shaft and its convergence; without convergence there is no result.
 
 The mesh is refined where the stress is high until three successive meshes agree: a small change and then a
-smaller one, since a single small change may be chance. The compared stress is recovered: polynomials of
-neighbouring elements are averaged where they meet (Zienkiewicz and Zhu 1992). At a sharp inner corner the
+smaller one, since a single small change may be a coincidence. The compared stress is recovered: polynomials
+of neighbouring elements are averaged where they meet (Zienkiewicz and Zhu 1992). At a sharp inner corner the
 stress is unbounded and each refinement raises it by a quarter, so the analysis gives no value, and names the
 corner as the reason. The search omits the regions near the ends, where the idealised clamp or load disturbs
 the field (de Saint-Venant's principle). If a fillet or a web begins closer to an end, the search begins
@@ -71,7 +71,7 @@ class Peaks:
 
     @property
     def converged(self) -> bool:
-        """Return whether the last change but one is small, and the last change smaller."""
+        """Return whether the last change is small and the change before it was small too."""
         *_, before, last = (1.0, 1.0, *self.changes)
         return before <= SMALL and last <= CONVERGED
 
@@ -97,7 +97,10 @@ def greatest_stress(
     edges = sharp_edges(solid, START)
 
     def places_on_mesh() -> Places:
-        """Return the places on the next mesh; it is released on return, so that only one is in memory."""
+        """Return the places on the next mesh.
+
+        The mesh is released on return, so that only one mesh is in memory at a time.
+        """
         grid = make_grid(solid, START, near, edges)
         system = System(grid, ORDER, material, load, few_forces=True)
         return _places_on(respond(system, boundary), measure)
@@ -121,7 +124,7 @@ class Places:
     values: Array  # (elements,) the highest stress in each element [MPa] under 1 N·mm
 
     def high(self, share: float) -> tuple[Near, ...]:
-        """Return the elements to refine: those with more than a share of the greatest stress."""
+        """Return the elements to refine: those whose stress exceeds a share of the greatest stress."""
         return tuple(_halved(one) for one in self.corners[self.values > share * self.peak.value])
 
 
@@ -149,7 +152,7 @@ def _places_on(response: Response, measure: Measure) -> Places:
 
 
 def searched(solid: Solid) -> tuple[float, float]:
-    """Return the levels of z [mm] between which the greatest stress is searched."""
+    """Return the range of z [mm] in which the greatest stress is searched."""
     ends = [face.center.z for face in solid.shape.faces if face.name in (HELD, LOADED)]
     low, high = min(ends), max(ends)
     extents = [_extent(face) for face in solid.shape.faces if face.name == FREE]

@@ -32,7 +32,7 @@ class ThrowReadback:
 
     @property
     def angles(self) -> tuple[float, float]:
-        """Return the angles of the pins next to the front and the rear web, from x towards y [rad]."""
+        """Return the angles of the pins next to the front and rear web, from x towards y [rad]."""
         first, last = (atan2(pin.point.y, pin.point.x) for pin in (self.pins[0], self.pins[-1]))
         return first, last
 
@@ -195,7 +195,7 @@ class ShaftReadback:
 
     @property
     def web_width(self) -> float:
-        """Return the web width: twice the distance of the web sides, the nearest planes along the axis."""
+        """Return the web width: twice the distance from the axis to the sides of the webs."""
         along = [p for p in self.seen.planes if abs(p.direction.dot(Z)) < _CLEAR]
         for normal, distance in self._sides_of_middle_webs() if self.split else ():
             sides = [plane for plane in along if _lies(plane, normal, distance)]
@@ -230,7 +230,7 @@ class ShaftReadback:
         }
 
     def pin_split(self, near: float) -> float:
-        """Return the angle from front to rear pins [deg], in the turn nearest to the requested angle."""
+        """Return the angle from front to rear pins [deg], in the turn nearest to the requested one."""
         turns = [degrees(rear - front) for front, rear in (throw.angles for throw in self.throws)]
         return near + alike((remainder(turn - near, 360) for turn in turns), "split pins")
 
@@ -275,21 +275,38 @@ class ShaftReadback:
 
     def counterweights(self) -> list[float]:
         """Return the radius of each web's counterweight [mm]; 0 for none."""
-        width = self.web_width
-        rims = ([c.diameter for c in self._about(*web)] for throw in self.throws for web in throw.webs)
-        return [max((d for d in rim if d > 1.01 * width), default=0.0) / 2 for rim in rims]
+        return [max((c.diameter for c in rim), default=0.0) / 2 for rim in self._rims]
 
-    def counterweight_angle(self, radii: Sequence[float], near: float) -> float:
-        """Return the common angle of the counterweights [deg]; flanks of several throws may lie on one plane.
-
-        A flank is a plane through the axis. At the half angle each throw with a counterweight has both
-        flanks. In the rare case of several such angles, the result is the one nearest to the expected angle
-        [deg].
+    def counterweight(self) -> float:
+        """Return the radius that the counterweights of all webs share [mm]; 0 if there are none.
 
         Raises
         ------
         LookupError
-            If there is no such angle.
+            If they differ.
+        """
+        alike(self.counterweights(), "counterweights")
+        rims = [cylinder for rim in self._rims for cylinder in rim]
+        return Size.radius(rims) if rims else 0.0
+
+    @cached_property
+    def _rims(self) -> list[list[Surface]]:
+        """Return the cylinders about the shaft that are wider than the web, for each web."""
+        least = 1.01 * self.web_width
+        webs = (web for throw in self.throws for web in throw.webs)
+        return [[c for c in self._about(*web) if c.diameter > least] for web in webs]
+
+    def counterweight_angle(self, radii: Sequence[float], near: float) -> float:
+        """Return the common angle of the counterweights [deg].
+
+        A flank is a plane through the axis, and flanks of several throws may lie in one plane. At half the
+        angle each throw with a counterweight has both flanks. In the rare case that several angles fit, the
+        result is the one nearest to the expected angle [deg].
+
+        Raises
+        ------
+        LookupError
+            If no angle fits.
         """
         flanks = [p for p in self.seen.planes if p.holds(Z) and abs(p.direction.z) < _CLEAR]
         lines = [_line(plane) for plane in flanks]
@@ -311,11 +328,11 @@ class ShaftReadback:
 
     @staticmethod
     def _fold(angle: float) -> float:
-        """Return the angle between two lines, at most a right angle [rad]."""
+        """Return the acute angle between two lines [rad]."""
         return abs(remainder(angle, pi))
 
     def bolts(self) -> dict[str, float]:
-        """Return number, diameter, pitch circle and depth of the flange holes; None if there are no holes."""
+        """Return number, diameter, pitch circle and depth of the flange holes; None without holes."""
         end = self.seen.levels(Z)[-1]
         behind = self.throws[-1].faces[-1] - _CLEAR
         holes = [c for c in self.beside if c.reach[0] > behind and abs(c.reach[1] - end) < _CLEAR]
@@ -326,7 +343,7 @@ class ShaftReadback:
         return {
             "bolt_holes": float(len(holes)),
             "bolt_hole_diameter": Size.diameter(holes),
-            "bolt_circle_diameter": Size.circle(holes),
+            "bolt_circle_diameter": Size.circle(holes, self._journal_surfaces()),
             "bolt_hole_depth": self.seen.apart(Z, bottom, end),
         }
 
@@ -343,7 +360,7 @@ def _leans(normal: Vector) -> bool:
 
 
 def _across(width: float, sides: Sequence[Surface]) -> Size:
-    """Return the width between planes on both sides of the axis."""
+    """Return the distance between planes on opposite sides of the axis."""
     normal = sides[0].direction
     ahead = [p for p in sides if p.along(normal) and p.point.dot(normal) > 0]
     behind = [p for p in sides if p.along(normal) and p.point.dot(normal) < 0]
@@ -366,5 +383,5 @@ def _line(flank: Surface) -> float:
 
 
 def _shown(line: float, lines: Iterable[float]) -> bool:
-    """Return whether a line through the axis is one of the given lines."""
+    """Return whether a line through the axis coincides with one of the given lines."""
     return any(abs(remainder(line - other, pi)) < 100 * _ANGLE for other in lines)

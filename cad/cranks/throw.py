@@ -49,17 +49,17 @@ class Throw:
 
     @property
     def inner(self) -> float:
-        """Return the z of the inner face of the web on +z."""
+        """Return the z coordinate of the inner face of the web on +z."""
         return self.pin_length / 2
 
     @property
     def outer(self) -> float:
-        """Return the z of the outer face of the web on +z."""
+        """Return the z coordinate of the outer face of the web on +z."""
         return self.inner + self.web_thickness
 
     @property
     def journal_end(self) -> float:
-        """Return the z of the end of the journal on +z."""
+        """Return the z coordinate of the end of the journal on +z."""
         return self.outer + self.journal_length
 
     @property
@@ -134,7 +134,7 @@ class Throw:
         return turned([((0, z), root[0]), root, *pairwise(corners)], 0.0, 1)
 
     def blind_bore(self) -> Solid:
-        """Return the bore of a split pin: from its end at -z through the web on +z, and beyond."""
+        """Return the bore of a split pin: it runs from its end at -z through the web on +z, and beyond."""
         length = self.inner + self.outer + self.journal_length / 2
         return Solid.makeCylinder(
             self.pin_bore, length, Vector(self.outline.throw, 0, -self.inner), Vector(0, 0, 1)
@@ -153,7 +153,7 @@ class Throw:
 def fillet_run(radius: float, size: float, z: float, up: int) -> Run:
     """Return the fillet between a face at z and a cylinder above (1) or below (-1) it.
 
-    A point if there is none.
+    Without a fillet, return a single point.
     """
     middle = radius + size * _MIDDLE, z + up * size * _MIDDLE
     return (radius + size, z), middle, (radius, z + up * size)
@@ -165,9 +165,9 @@ def bore(radius: float, reach: float, x: float) -> Solid:
 
 
 def turned(runs: Sequence[Run], x: float, side: int) -> Solid:
-    """Return a closed outline of (distance from the axis, z), revolved about the axis through x along z.
+    """Return the solid of a closed outline (distance from the axis, z) revolved about an axis along z.
 
-    Its seam is on the given side of the axis, away from the mouth of the drilling.
+    The axis is at x. The seam is on the given side of the axis, away from the mouth of the drilling.
     """
     real = [run for run in runs if run[0] != run[-1]]
     closing = (real[-1][-1], real[0][0])

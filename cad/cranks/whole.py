@@ -73,7 +73,7 @@ class WholeShaft:
 
     @property
     def like(self) -> Throw:
-        """Return the first throw, to which all throws are equal except for their counterweights."""
+        """Return the first throw; all others equal it except for their counterweights."""
         return self.throws[0].front
 
     @property
@@ -85,9 +85,9 @@ class WholeShaft:
         return t.pin_length + 2 * t.web_thickness + t.journal_length
 
     def halves(self, number: int) -> tuple[Half, Half]:
-        """Return angle and position of the front and rear half of each throw; throws are numbered from 0.
+        """Return the angle and position of the front and the rear half of each throw, numbered from 0.
 
-        Both are equal for an undivided pin.
+        Both halves have the same angle and position if the pin is undivided.
         """
         angle, middle = self.throws[number].angle, self.pitch * (number + 0.5)
         if self.split is None:
@@ -97,17 +97,17 @@ class WholeShaft:
 
     @cached_property
     def mains(self) -> tuple[float, ...]:
-        """Return the z of the middles of the main journals."""
+        """Return the z coordinates of the middles of the main journals."""
         return tuple(self.pitch * k for k in range(len(self.throws) + 1))
 
     @property
     def low(self) -> float:
-        """Return the z of the end of the nose."""
+        """Return the z coordinate of the end of the nose."""
         return -self.like.journal_length / 2 - self.nose.length
 
     @property
     def high(self) -> float:
-        """Return the z of the end of the flange."""
+        """Return the z coordinate of the end of the flange."""
         return self.mains[-1] + self.like.journal_length / 2 + self.flange.length
 
     def solid(self) -> Shape:

@@ -18,14 +18,14 @@ _ARC = 1e-5  # [mm]: how near to its surface an edge of the section lies
 
 
 def standing(seen: Sequence[PartSurfaces], section: View, end: View) -> list[Measure]:
-    """Return all such sizes that the views show."""
+    """Return all sizes of lugs, joints and chamfers that the views show."""
     kinds = (of_circles, of_levels, of_arms, of_uprights, of_slots)
     beside = [measure for one in seen for kind in kinds for measure in kind(one, end)]
     return [*beside, *of_walls(seen, section), *of_bevels(seen, section)]
 
 
 def of_circles(seen: PartSurfaces, end: View) -> Iterator[Measure]:
-    """Yield the circles about the shaft on which the axes of holes are."""
+    """Yield the pitch circles about the shaft through the axes of holes."""
     for cylinder in seen.cylinders:
         if cylinder.along(Z) and not cylinder.about(Z):
             right, up = end.frame.flat(cylinder.point)
@@ -34,7 +34,7 @@ def of_circles(seen: PartSurfaces, end: View) -> Iterator[Measure]:
 
 
 def of_slots(seen: PartSurfaces, end: View) -> Iterator[Measure]:
-    """Yield the widths of slots and bars along the shaft that stand askew in the end view."""
+    """Yield the widths of slots and bars along the shaft that are oblique in the end view."""
     sides = [p for p in seen.planes if abs(p.direction.dot(Z)) < _CLEAR and p.middle is not None]
     askew = [p for p in sides if not (p.along(X) or p.along(Y))]
     for one, other in combinations(askew, 2):
@@ -46,7 +46,10 @@ def of_slots(seen: PartSurfaces, end: View) -> Iterator[Measure]:
 
 
 def of_walls(parts: Sequence[PartSurfaces], section: View) -> Iterator[Measure]:
-    """Yield walls: from the bore of one part to the outside of another, or to the circle of a relief."""
+    """Yield wall thicknesses: from a bore to an outer cylinder, or to the circle of a relief.
+
+    For a relief, the height at which it meets the bore follows.
+    """
     left = section.box[0][0]
     rings = [one.rings(Z) for one in parts]
     for bore in [some[0] for some in rings if some]:
@@ -68,7 +71,7 @@ def of_walls(parts: Sequence[PartSurfaces], section: View) -> Iterator[Measure]:
 
 
 def of_arms(seen: PartSurfaces, end: View) -> Iterator[Measure]:
-    """Yield angles at the shaft between planes through it, on the side of the crown."""
+    """Yield the angles between planes through the shaft's axis, on the side of the crown."""
     arms = []
     for plane in seen.planes:
         if plane.holds(Z) and not plane.along(Y):
@@ -83,7 +86,7 @@ def of_arms(seen: PartSurfaces, end: View) -> Iterator[Measure]:
 
 
 def of_uprights(seen: PartSurfaces, end: View) -> Iterator[Measure]:
-    """Yield the holes along y: their diameter, depth, and the distance of their axes."""
+    """Yield the sizes of holes along y: diameter, depth, and the distance between axes."""
     feet = []
     for hole in (cylinder.turned(Y) for cylinder in seen.cylinders if cylinder.along(Y)):
         x, (low, high) = hole.point.x, hole.reach
@@ -102,7 +105,7 @@ def of_uprights(seen: PartSurfaces, end: View) -> Iterator[Measure]:
 
 
 def of_levels(seen: PartSurfaces, end: View) -> Iterator[Measure]:
-    """Yield distances from the largest cylinder about the shaft, and from the shaft, to planes beyond it."""
+    """Yield the distances from the shaft's axis, and from cylinders about it, to planes beyond them."""
     rings = [(0.0, on()), *((ring[0].diameter / 2, on(*ring)) for ring in seen.rings(Z))]
     for axis in (X, Y):
         right, up = end.frame.flat(axis)
@@ -121,7 +124,7 @@ def of_levels(seen: PartSurfaces, end: View) -> Iterator[Measure]:
 
 
 def of_bevels(parts: Sequence[PartSurfaces], section: View) -> Iterator[Measure]:
-    """Yield the width of edges of the section at 45°, along the shaft."""
+    """Yield the widths along the shaft of edges of the section at 45°."""
     cones = [cone.turned(Z) for one in parts for cone in one.cones if cone.about(Z)]
     for (x, y), (z, v) in section.edges:
         if abs(z - x) > _CLEAR and isclose(abs(z - x), abs(v - y), rel_tol=1e-6):
@@ -132,11 +135,11 @@ def of_bevels(parts: Sequence[PartSurfaces], section: View) -> Iterator[Measure]
 
 
 def _is_cut_at(cone: Surface, middle: float, diameter: float) -> bool:
-    """Return whether an edge of the section with that middle and mean diameter is on a cone."""
+    """Return whether an edge of the section with the given middle and mean diameter lies on a cone."""
     return abs(sum(cone.reach) / 2 - middle) < _ARC and abs(cone.diameter - diameter) < _ARC
 
 
 def _are_alike(one: Surface, other: Surface) -> bool:
-    """Return whether two cones are the same chamfer at two ends of a part."""
+    """Return whether two cones of one part are chamfers of the same size."""
     sizes = (one.diameter - other.diameter, one.reach[1] - one.reach[0] - other.reach[1] + other.reach[0])
     return one.face[0] == other.face[0] and all(abs(size) < _ARC for size in sizes)

@@ -8,6 +8,7 @@ import numpy as np
 
 from cad.model import STEEL, Box, CadModel, Part, mm
 from cad.shells.housing import Housing
+from cad.shells.split_bore import bore_clearance_rule, breadth_rule, roof_rule, sides_rule
 from cad.surfaces import PartSurfaces, Size, X, Y, Z
 from templates.core.language.template import Array, Truth, derived, formula, given, require
 
@@ -98,27 +99,10 @@ class BearingHousing(CadModel):
     def s_j(self) -> Array:
         return (self.A - self.D) / 2
 
-    @require("housing_breadth", "housing_bore", remedy="make the housing broader")
-    def bore_has_sides(self) -> Truth:
-        """The housing is at least 5 % broader than its bore."""
-        return self.A >= 1.05 * self.D
-
-    @require("block_height", "cap_height", "housing_bore", remedy="make block and cap higher")
-    def bore_has_a_roof(self) -> Truth:
-        """The heights of block and cap are each at least 55 % of the bore diameter."""
-        return (self.H_b >= 0.55 * self.D) & (self.H_c >= 0.55 * self.D)
-
-    @require("bolt_spacing", "bolt_hole_diameter", "housing_bore",
-             remedy="move the bolts outwards or make their holes smaller, or 0 for none")  # fmt: skip
-    def bolts_clear_bore(self) -> Truth:
-        """The bolt holes are clear of the bore by at least 1 % of its diameter."""
-        return (self.d_b <= 0) | (self.a_b - self.d_b >= 1.01 * self.D)
-
-    @require("bolt_spacing", "bolt_hole_diameter", "housing_breadth",
-             remedy="move the bolts inwards or make their holes smaller, or 0 for none")  # fmt: skip
-    def bolts_keep_within(self) -> Truth:
-        """The bolt holes lie within 98 % of the housing's breadth."""
-        return (self.d_b <= 0) | (self.a_b + self.d_b <= 0.98 * self.A)
+    bore_has_sides = sides_rule("housing_breadth", "housing_bore")
+    bore_has_a_roof = roof_rule("block_height", "cap_height", "housing_bore")
+    bolts_clear_bore = bore_clearance_rule("housing_bore")
+    bolts_keep_within = breadth_rule("housing_breadth")
 
     @require("bolt_hole_diameter", "oil_drilling_diameter", "housing_width",
              remedy="make the holes smaller or the housing wider")  # fmt: skip
@@ -151,7 +135,7 @@ class BearingHousing(CadModel):
         )
 
     def drawn(self) -> Housing:
-        """Return the parameters as radii and halves."""
+        """Return the parameters converted to radii and half lengths."""
         return Housing(
             bore=mm(self.D) / 2,
             half_width=mm(self.B) / 2,
@@ -165,7 +149,7 @@ class BearingHousing(CadModel):
         )
 
     def bounding_box(self) -> Box:
-        """Return the block and cap together."""
+        """Return the box of block and cap together."""
         a, b = mm(self.A) / 2, mm(self.B) / 2
         return Box((-a, -mm(self.H_c), -b), (a, mm(self.H_b), b))
 

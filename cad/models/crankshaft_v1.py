@@ -101,12 +101,14 @@ class Crankshaft(SplitParameters, EndParameters):
         "nose_diameter": {"cylindricity": 0.5},
         "flange_diameter": {},
         "bolt_hole_diameter": {},
+        "bolt_circle_diameter": {},
         "journal_length": {},
         "pin_length": {"perpendicularity": 1, "to": "A"},
         "web_thickness": {},
         "middle_web_thickness": {},
         "web_width": {},
         "fillet": {},
+        "counterweight_radius": {},
         "nose_length": {},
         "flange_thickness": {},
         "bolt_hole_depth": {},
@@ -198,11 +200,11 @@ class Crankshaft(SplitParameters, EndParameters):
         return (Part(self.id, shaft.solid(), shaft.volume()),)
 
     def bounding_box(self) -> Box:
-        """Return the webs, counterweights, nose and flange together."""
+        """Return the box of the webs, counterweights, nose and flange together."""
         return self.drawn().box()
 
     def shaft(self) -> Shaft:
-        """Return the planes at which it is held and loaded: the end of its nose and its flange."""
+        """Return the planes at which an analysis holds and loads the shaft: the ends of nose and flange."""
         shaft = self.drawn()
         return Shaft(shaft.low, shaft.high)
 
@@ -216,7 +218,7 @@ class Crankshaft(SplitParameters, EndParameters):
             "pin_angles": found.pin_angles(near),
             **found.common(),
             "pin_split": found.pin_split(float(np.degrees(self.delta))),
-            "counterweight_radius": radii,
+            "counterweight_radius": radii if np.ndim(self.R_w) else found.counterweight(),
             **found.flange(),
             **found.bolts(),
         }

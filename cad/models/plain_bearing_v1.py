@@ -134,6 +134,7 @@ class PlainBearing(ShellRules):
         "crush_height": {},
         "inner_chamfer": {},
         "outer_chamfer": {},
+        "relief_height": {},
         "relief_depth": {},
         "tang_width": {},
         "tang_length": {},
@@ -219,7 +220,7 @@ class PlainBearing(ShellRules):
         return parts
 
     def drawn(self, which: str) -> HalfShell:
-        """Return the parameters of one shell as radii and halves, in its state."""
+        """Return the parameters of one shell in its state, converted to radii and half lengths."""
         upper, fitted = which != "lower", self.state == "fitted"
         bore = mm(self.d / 2 if fitted else self.r_f)
         angle = np.pi / 2 if fitted else round(float(self.phi_f), _ANGLE_DIGITS)
@@ -246,7 +247,7 @@ class PlainBearing(ShellRules):
         )  # fmt: skip
 
     def bounding_box(self) -> Box:
-        """Return the box of the back or its flanges, the tang on the side +x, and the legs."""
+        """Return the box of the back or its flanges, including the tang on the side +x and the legs."""
         shell = self.drawn("full" if self.shells == "full" else "upper")
         left, right, low = reach_of(shell)
         high, b = shell.flange.radius if shell.flange else shell.outside, shell.half_width

@@ -119,7 +119,7 @@ class HalfShell:
     def lining_joint(self) -> list[Point]:
         """Return the section of the lining at its joint.
 
-        If the groove divides it, the piece on the side +z.
+        If the groove divides the lining, return the section of the piece on the side +z.
         """
         b, c, s = self.half_width, self.inner_chamfer, self.lining
         inside = self.bore + (self.relief.depth if self.relief else 0.0)
@@ -135,7 +135,7 @@ class HalfShell:
         return outline(*low, *high, *self._notch(inside, s))
 
     def _notch(self, inside: float, outside: float) -> list[Point]:
-        """Return the corners of a groove that extends from joint to joint, at its height above the inside."""
+        """Return the corners of a groove that extends from joint to joint, above the inside."""
         groove = self.groove
         if groove is None or not groove.is_whole or groove.bottom <= inside or groove.bottom >= outside:
             return []
@@ -164,9 +164,9 @@ class HalfShell:
         return body
 
     def _leg(self, body: Shape, side: int) -> Shape:
-        """Return the extrusion of the joint face.
+        """Extrude the joint face to a leg.
 
-        Another face with vertices 1e-15 mm off would change the bytes.
+        Another face with vertices that differ by 1e-15 mm would change the bytes.
         """
         normal = Vector(side * sin(self.lift), -cos(self.lift), 0)
         feet = [f for f in body.Faces() if f.geomType() == "PLANE" and f.normalAt().dot(normal) > 1 - 1e-12]
@@ -174,13 +174,13 @@ class HalfShell:
         return extrude(foot, (normal * self.crush).toTuple())
 
     def _at_joint(self, body: Shape, side: int) -> Shape:
-        """Return a shape that was built at y = 0, rotated to the joint on that side."""
+        """Rotate a shape that was built at y = 0 to the joint on the given side."""
         if self.lift == 0:
             return body
         return body.rotate(Vector(0, 0, 0), Vector(0, 0, 1), degrees(side * self.lift))
 
     def _lip(self, tang: Tang) -> Shape:
-        """Return the box of the locating lip, which starts inside the back."""
+        """Return the box of the locating lip, which begins inside the back."""
         edge = sqrt(self.outside**2 - tang.length**2)
         foot = edge - 0.1 * (self.outside - self.lining)
         if self.groove and self.groove.bottom >= foot:
@@ -192,7 +192,7 @@ class HalfShell:
         return self._at_joint(lip, 1)
 
     def _ring(self, groove: Groove) -> Shape:
-        """Return the solid that the groove removes, starting inside the bore."""
+        """Return the solid that the groove removes; it begins inside the bore."""
         w, low = groove.half_width, 0.9 * self.bore
         section = outline((low, -w), (groove.bottom, -w), (groove.bottom, w), (low, w))
         turn = 180.0 + 2 * _BEYOND if groove.is_whole else degrees(groove.turn)
@@ -215,7 +215,7 @@ class HalfShell:
         return self._with_legs(body, self.lining_joint())
 
     def _cone(self, side: int) -> Shape:
-        """Return the solid that the bore's chamfer removes at one end, with some oversize."""
+        """Return the solid, slightly oversized, that the chamfer of the bore removes at one end."""
         c, b, r = self.inner_chamfer, self.half_width, self.bore
         over, inside = 0.5 * c, 0.1 * r
         section = outline(

@@ -35,7 +35,7 @@ class Housing:
         return body
 
     def cap(self, gap: float = 0.0) -> Shape:
-        """Return the half at -y with through holes for the bolts; a gap moves it away from the joint."""
+        """Return the half at -y with through holes for the bolts; a gap shifts it away from the joint."""
         body = self._half(-1, self.cap_height)
         for axis in self._bolts():
             body = cut(body, self._hole(self.bolt, axis, -1.5 * self.cap_height, self.cap_height))

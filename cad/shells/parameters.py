@@ -14,7 +14,10 @@ from templates.core.language.template import Array, Truth, choice, derived, form
 
 @units("m", "m", returns="1")
 def clear_share(width: Array, groove: Array) -> Array:
-    """Return the share of the width [m] for a tang that is clear of the sides of a groove of a width [m]."""
+    """Return the width of the default tang as a share of the shell's width [m].
+
+    The share is 0.12, or 0.09 if a side of the tang would otherwise be close to a side of the groove.
+    """
     half = groove / 2 / width
     beside = np.minimum(abs(half - 0.19), abs(half - 0.31)) < 0.006  # 1/4 -+ 0.12/2
     return np.where(beside, 0.09, 0.12)
@@ -126,7 +129,7 @@ class ShellParameters(CadModel):
 
     @derived("mm", "crush height", symbol="a", ge=0, le=50)
     def a(self) -> Array:
-        """Return the default: no crush height, as built in."""
+        """Return the default: no crush height, as for an installed shell."""
         return 0 * self.d
 
     @formula("mm", "outer diameter", symbol="D")

@@ -75,13 +75,13 @@ class ShellRules(ShellParameters):
     @require("oil_hole_diameter", "oil_groove_width",
              remedy="make the hole as wide as the groove, or change it by 1 %")  # fmt: skip
     def hole_clears_groove_edge(self) -> Truth:
-        """An oil hole wider than its groove is wider by 1 %; for less, OpenCASCADE returns wrong solids."""
+        """An oil hole wider than its groove is wider by 1 %; for less, OpenCASCADE builds wrong solids."""
         apart = (self.d_h <= self.w_g) | (self.d_h >= 1.01 * self.w_g)
         return (self.w_g <= 0) | (self.t_g <= 0) | apart
 
     @require("oil_groove_angle", "oil_hole_diameter", remedy="make the groove longer or the hole smaller")
     def groove_holds_the_hole(self) -> Truth:
-        """A groove over a part of the bore is longer than the oil hole is wide, by 10 %."""
+        """A groove over a part of the bore is at least 10 % longer than the oil hole is wide."""
         return (self.t_g <= 0) | (self.d * np.sin(self.phi_g / 2) >= 1.1 * self.d_h)
 
     @require("oil_groove_angle", "relief_height",

@@ -86,7 +86,7 @@ class ShellReadback:
     def groove_turn(self) -> float:
         """Return the angle of the groove [rad] from end to end.
 
-        A half turn if it runs from joint to joint.
+        It is half a turn if the groove runs from joint to joint.
         """
         groove = self.wanted.groove
         if groove is None or groove.is_whole:
@@ -101,7 +101,7 @@ class ShellReadback:
         return self.back.length(Z)
 
     def chamfers(self) -> dict[str, float]:
-        """Return the chamfers of the bore, and of the back where there is no flange."""
+        """Return the chamfer of the bore, and that of the back if there is no flange."""
         half = self.width() / 2
         bore, outside = self.bore_ring, self.outside_ring
         flange = self.wanted.flange
@@ -137,7 +137,7 @@ class ShellReadback:
         }
 
     def _groove_width(self, half: float) -> float:
-        """Return the distance between the sides of the groove; if it divides the lining, on the back."""
+        """Return the distance between the sides of the groove, on the back if it divides the lining."""
         levels = self.lining.levels(Z)
         if not self.wanted.is_split:
             return self.lining.apart(Z, nearest(levels, -half), nearest(levels, half))
@@ -145,7 +145,7 @@ class ShellReadback:
         return self.back.apart(Z, nearest(sides, -levels[0]), nearest(sides, levels[0]))
 
     def _groove_angle(self) -> float:
-        """Return the angle [deg] between the ends of the groove, planes through the axis of the shaft."""
+        """Return the angle [deg] between the ends of the groove, which are planes through the axis."""
         angle = degrees(self.groove_turn)
         ends = [p for p in self._radial() if abs(_from_crown(p) - self.groove_turn / 2) < _SAME]
         right, left = ([p for p in ends if _side(p) == side] for side in (1, -1))
@@ -190,7 +190,7 @@ class ShellReadback:
 
 
 def _nearest_planes(planes: Sequence[Surface], away: float) -> list[Surface]:
-    """Return the planes along the shaft whose distance from its axis [mm] is nearest to another."""
+    """Return the planes along the shaft whose distance from its axis is nearest to a given distance [mm]."""
     distance = nearest(map(off_axis, planes), away)
     return [plane for plane in planes if abs(off_axis(plane) - distance) < _SAME]
 

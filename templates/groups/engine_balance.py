@@ -195,7 +195,7 @@ class EngineBalance(EngineCylinders):
 
     @shared
     def layout(self) -> Layout:
-        """Return the pins and firing."""
+        """Return the layout of pins and firing."""
         return arranged(
             self.strokes, self.order, self.psi_g, self.phi_g, self.beta, self.throws, self.crank.top,
             self.gas_cycle,
@@ -306,7 +306,7 @@ class EngineBalance(EngineCylinders):
 
     @formula("deg", "rotating couple angle", symbol=r"\gamma_{C}")
     def gamma_C(self) -> Array:
-        """Direction, at crank angle 0, of the sum of position times force."""
+        """Direction of the sum of position times force at crank angle 0."""
         return direction(self.rotating_couples)
 
     @profile("N", "order force forward", along=ORDERS, symbol=r"F_\mathrm{fwd}",

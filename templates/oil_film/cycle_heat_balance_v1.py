@@ -123,6 +123,10 @@ class CycleHeatBalance(Oil, FedBearing):
         "supply_temperature": "90 degC",
         "hths_viscosity": "3.5 mPa*s",
     }  # fmt: skip
+    main_results = (
+        "largest_load", "speed", "maximum_pressure", "minimum_film_thickness", "power_loss",
+        "total_oil_flow", "film_temperature",
+    )  # fmt: skip
     criteria = {
         "film_exists": film_exists(),
         "own_film": {
@@ -180,7 +184,7 @@ class CycleHeatBalance(Oil, FedBearing):
         return np.isnan(self.p_s) | self.feeding.grooved | (self.level == "supplied")
 
     def ladder(self) -> tuple[str, ...]:
-        """Return the levels that model the oil supply; `supplied` only where a groove or hole feeds it."""
+        """Return the levels that model the oil supply; `supplied` only if a groove or hole feeds the film."""
         cheap = ("mobility_grooved",) if np.any(self.feeding.grooved) else ("mobility_short", "mobility")
         return (*cheap, "supplied") if np.all(self.feeding.count > 0) else cheap
 
@@ -206,7 +210,7 @@ class CycleHeatBalance(Oil, FedBearing):
 
     @formula("s/m**2", "load scale", symbol="s")
     def s(self) -> Array:
-        """The load number divided by load and fluidity."""
+        """Load number divided by load and fluidity."""
         return self.psi**2 / (self.D * self.W * self.Omega)
 
     @shared
@@ -262,13 +266,13 @@ class CycleHeatBalance(Oil, FedBearing):
         r"{10^{6}\,\mathrm{s^{-1}}\,\eta_{150}}\right)^{n}}",
     )  # fmt: skip
     def eta_e(self) -> Array:
-        """Viscosity of the film at its temperature and shear rate; without an HTHS viscosity it is η."""
+        """Viscosity of the film at its temperature and shear rate; without an HTHS viscosity it equals η."""
         return viscosity_of(self.heat)
 
     @formula("degC", "film temperature", symbol="T_{m}", source=ISO,
              latex=r"T_{s}+\frac{k\,P}{2\,\rho_{c}\left(Q+Q_{p}\right)}")  # fmt: skip
     def T_film(self) -> Array:
-        """Mean of supply and outlet temperature, from the heat to the oil; at level supplied without Q_p."""
+        """Mean of supply and outlet temperature, from the heat to the oil; level supplied omits Q_p."""
         return temperature_of(self.heat, self.eta_e)
 
     @formula("degC", "outlet temperature", symbol="T_{ex}", source=ISO)
@@ -297,7 +301,7 @@ class CycleHeatBalance(Oil, FedBearing):
              latex=r"\frac{1}{T}\int_{T}\left(\frac{\pi\,\eta_{e}\,W\,D^{3}\left(\omega_{J}-\omega_{B}\right)^{2}}{"
              r"2\,c\,\sqrt{1-\epsilon^{2}}}+\vec{F}\cdot\vec{v}\right)d\theta")  # fmt: skip
     def P(self) -> Array:
-        """Mean over the cycle; v is the velocity of the centre in axes that rotate at the mean speed."""
+        """Mean power loss; v is the velocity of the centre in axes that rotate at the mean speed."""
         return loss_of(self.heat, self.eta_e)
 
     @formula("l/min", "side flow", symbol="Q", latex=r"\frac{W\,D\,c\,\Omega}{2}\,\bar{q}")

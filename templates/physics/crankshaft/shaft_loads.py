@@ -32,7 +32,7 @@ def _middle(places: Array) -> float:
 
 
 def throw_of_web(places: Array, named: Array, middles: Array) -> Places:
-    """Return the index of each web's throw: the named one (from 1 in the input), else the nearest."""
+    """Return the index of each web's throw: the given one (from 1 in the input), else the nearest one."""
     if np.ndim(named):
         return np.clip(np.rint(named).astype(int) - 1, 0, middles.size - 1)
     return np.argmin(np.abs(places[:, None] - middles), axis=1)
@@ -145,7 +145,7 @@ def change_on_supports(elastic_forces: Vectors, determinate_forces: Vectors) -> 
 
 @units(None, None, "m", returns="1")
 def imbalance(forces: Vectors, loads: ShaftLoads, mains: Array) -> Array:
-    """Return the largest force or moment left unbalanced by the reactions, relative to the loads."""
+    """Return the largest force or moment that the reactions leave unbalanced, relative to the loads."""
     return left_over(forces, loads, mains) if np.ndim(forces) else _NONE
 
 

@@ -78,7 +78,7 @@ class CycleOil(ViscousOil):
         return self.viscosity(T) * (1 - self.taken(T, rate))
 
     def taken(self, T: Array, rate: Array) -> Array:
-        """Return the share [-] of the viscosity that shear takes at a temperature [K] and a rate [1/s]."""
+        """Return the share [-] by which shear reduces the viscosity at a temperature [K] and a rate [1/s]."""
         one, nothing = np.asarray(1.0), np.asarray(0.0)
         still, hot = self.viscosity(T), self.viscosity(np.asarray(HTHS_TEMPERATURE))
         at_150 = critical_rate_of_HTHS(self.left, one, nothing, self.exponent)
@@ -102,7 +102,7 @@ class CycleBearing:
     """Radial clearance [m]."""
 
     def fed(self, eta: Array) -> FedDuty:
-        """Return the duty at a viscosity [Pa s]."""
+        """Return the duty with its oil supply at a viscosity [Pa s]."""
         P = self.pressure * (2 * self.clearance / self.feeding.D) ** 2 / (eta * self.duty.Omega)
         return fed_duty(self.level, replace(self.duty, scale=self.duty.scale / eta), self.feeding, P)
 
@@ -176,7 +176,7 @@ def cycle_heat(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
             return np.asarray(np.log(oil.sheared(T, film.rate)) - x)
 
     def at_some(x: Array, number: Array) -> Array:
-        """Return the same object for the points with these indices."""
+        """Return the same object for a subset of the points, given by their indices."""
         everywhere = np.full(top.size, np.nan)
         everywhere[number.astype(np.int64)] = x
         return lack(everywhere.reshape(shape)).ravel()[number.astype(np.int64)]
@@ -238,7 +238,7 @@ def temperature(oil: CycleOil, film: FilmState) -> Array:
 
 
 def _where_known(eta: Array, value: Array) -> Array:
-    """Return the value where a viscosity was found, else NaN."""
+    """Return the value where a viscosity was found, otherwise NaN."""
     return np.asarray(np.where(np.isnan(eta), np.nan, value))[()]
 
 
@@ -262,10 +262,10 @@ def rate_of(heat: CycleHeat, eta: Array) -> Array:
 
 @units(None, "Pa*s", "Pa*s", returns="1", latex=r"1-\frac{{{1}}}{{{2}}}")
 def shear_loss_of(heat: CycleHeat, eta: Array, still: Array) -> Array:
-    """Return the share of the viscosity that shear takes [-]; NaN where the viscosity is.
+    """Return the share by which shear reduces the viscosity [-]; NaN where the viscosity is NaN.
 
-    By Cross's law, so that it is never below 0: 1 less the ratio of both viscosities [Pa s] is it but for
-    the residual of the balance.
+    It follows from Cross's law and is never below 0. Except for the residual of the balance it equals 1 minus
+    the ratio of the two viscosities [Pa s].
     """
     return _where_known(eta, heat.taken)
 
@@ -290,7 +290,7 @@ def feed_flow_of(heat: CycleHeat, eta: Array) -> Array:
 
 @units("m**3/s", "m**3/s", returns="m**3/s", latex="{0}+{1}")
 def all_flow(side: Array, feed: Array) -> Array:
-    """Return the flow out of the ends [m³/s]: side flow plus feed flow, with NaN as no feed flow."""
+    """Return the flow out of the ends [m³/s]: side flow plus feed flow; a feed flow of NaN counts as 0."""
     return side + np.nan_to_num(feed)
 
 
