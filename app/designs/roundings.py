@@ -93,6 +93,7 @@ def between(
     for cell in rounded_cells:
         behind = needs(graph, cell.uses.values(), ())
         used = {one.reference for one in behind.cells}
+        used |= behind.waiting
         used |= {Reference(block, None, name) for block, names in behind.members.items() for name in names}
         for place in used.intersection(places):
             through.setdefault(place, []).append(cell)

@@ -133,6 +133,15 @@ class Designs:
         with self.database.read() as session:
             return views.newest(session, id, number)
 
+    def with_results(self, design: Design) -> Design:
+        """Return a design with the results of its revision, if it has any."""
+        if design.state != "current":
+            return design
+        with self.database.read() as session:
+            row = repository.lean(session, design.id, design.revision)
+            results = views.results(session, row)
+        return design.model_copy(update={"results": results}) if results else design
+
     def network(self, id: str) -> DesignNetwork:
         """Return the dependencies in a design.
 

@@ -8,7 +8,7 @@ from sqlalchemy.orm import Session
 
 from app.designs import releases, repository, tolerances
 from app.designs.result_records import results_of
-from app.designs.schemas.designs import Design, DesignSummary, ModelMeasurements, Revision
+from app.designs.schemas.designs import Design, DesignResults, DesignSummary, ModelMeasurements, Revision
 from app.designs.variants.names import natural
 from app.identity.rows import names
 from app.identity.schemas.principals import Author
@@ -122,6 +122,21 @@ def governing(session: Session, row: RevisionRow) -> tuple[str, Revision]:
     steps = {**own.steps, **results.governing_steps}
     rounded = results.rounded.get(results.governing or None, [])
     return results.governing, own.model_copy(update={"steps": steps, "rounded": rounded})
+
+
+def results(session: Session, row: RevisionRow) -> DesignResults | None:
+    """Return the single outputs and the judged criteria of a revision; None if it has no results."""
+    kept = results_of(session, row)
+    if kept.text is None:
+        return None
+    outputs = {
+        f"{step}.{name}": output
+        for step, one in kept.steps.items()
+        for name, output in one.outputs.items()
+        if not isinstance(output.value, list)
+    }
+    judged = {name: part for name, part in kept.judged.items() if part is not None}
+    return DesignResults.model_validate({"outputs": outputs, **judged})
 
 
 def summary(session: Session, row: RevisionRow) -> Revision:

@@ -104,6 +104,17 @@ class DesignList(Page[DesignSummary]):
     """A page of designs, newest first."""
 
 
+class DesignResults(Answer):
+    """The results of a revision: single outputs of its steps, and its criteria as judged.
+
+    Lists, curves and inputs are in `/designs/{id}/revisions/{number}`.
+    """
+
+    outputs: dict[str, Output] = Field(description="by the names in relations: `film.power_loss`")
+    criteria: list[Criterion] = Field([], description="worst first; absent if there are none")
+    verdict: Verdict | None = Field(None, description="verdict over all criteria; absent without criteria")
+
+
 class Design(Answer):
     """A design at its newest revision: what its user wrote, and the state of its regeneration."""
 
@@ -121,6 +132,9 @@ class Design(Answer):
     )
     table: DesignTable | None = Field(
         None, description="the table of results; absent if its columns are the main results of the templates"
+    )
+    results: DesignResults | None = Field(
+        None, description="absent while the design is calculated, if it failed, and with `return=minimal`"
     )
     problem: Problem | None = Field(description="why the regeneration failed")
     created: str

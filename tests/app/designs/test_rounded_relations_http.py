@@ -6,7 +6,7 @@ import io
 import ezdxf
 import pytest
 from bare_shells import BUSH
-from serving import API, created, faults, revision
+from serving import API, created, faults, moody, revision
 from study_helpers import done
 
 DESIGNS = f"{API}/designs"
@@ -115,6 +115,35 @@ def test_a_report_states_both_values(http, design):
 def test_a_report_on_paper_is_typeset(http, design):
     answer = http.get(f"{place(design)}/report.pdf", headers={"Prefer": "wait=60"})
     assert answer.content.startswith(b"%PDF")
+
+
+def test_an_iteration_that_alternates_between_two_multiples_names_the_rounding(http):
+    """A cube of 20 mm weighs 63 g and asks for 30 mm; one of 30 mm weighs 212 g and asks for 20 mm."""
+    document = moody("= 36 mm - model.mass * 85 mm/kg rounded to 10 mm")
+    document["iterations"] = [{"through": "model.mass", "start": "63 g", "limit": 3}]
+    design = created(http, document)
+    assert design["state"] == "failed"
+    detail = design["problem"]["detail"]
+    assert "model.size (rounded to 10 mm) may alternate between two multiples: take a smaller step" in detail
+
+
+def test_an_iteration_settles_on_a_chosen_size(http):
+    document = moody("= 20 mm + model.mass * 10 mm/kg rounded up to 1 mm")
+    document["iterations"] = [{"through": "model.mass", "start": "1 kg", "limit": 5}]
+    design = created(http, document)
+    assert design["state"] == "current", design["problem"]
+    (row,) = revision(http, design)["rounded"]
+    assert row["chosen"] == {"value": 21.0, "unit": "mm"}
+    assert 20 < row["calculated"]["value"] < 21
+
+
+def test_the_page_of_solve_states_the_target_with_the_chosen_values(http):
+    sizes = {"bore": "48.2 mm", "wide": "= 0.31 * bore rounded up to 0.5 mm"}
+    made = created(http, {"name": "to solve", "parameters": sizes})
+    asked = {"unknown": "bore", "low": "40 mm", "high": "60 mm", "output": "wide", "value": "15.2 mm"}
+    page = http.get(f"/designs/{made['id']}/solve", params=asked, headers={"Accept": "text/html"}).text
+    assert "solved with the calculated values of wide (rounded up to 0.5 mm)" in page
+    assert "0.0155 m with the chosen values" in page
 
 
 def test_slopes_of_a_study_name_the_rounding(http):
