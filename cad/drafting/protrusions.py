@@ -19,7 +19,7 @@ _ARC = 1e-5  # [mm]: how near to its surface an edge of the section lies
 
 def standing(seen: Sequence[PartSurfaces], section: View, end: View) -> list[Measure]:
     """Return all sizes of lugs, joints and chamfers that the views show."""
-    kinds = (of_circles, of_levels, of_arms, of_uprights, of_slots)
+    kinds = (of_circles, of_levels, of_floors, of_arms, of_uprights, of_slots)
     beside = [measure for one in seen for kind in kinds for measure in kind(one, end)]
     return [*beside, *of_walls(seen, section), *of_bevels(seen, section)]
 
@@ -121,6 +121,31 @@ def of_levels(seen: PartSurfaces, end: View) -> Iterator[Measure]:
                     form: Form = "across" if up == 0 else "up"
                     plane = on(*seen.planes_at(axis, level))
                     yield Measure(sort, abs(side - start), "end", form, ends, 1, plane, faces)
+
+
+def of_floors(seen: PartSurfaces, end: View) -> Iterator[Measure]:
+    """Yield the depths of keyways: from a floor between two walls to the cylinder above it."""
+    for floor in (p for p in seen.planes if p.along(X) or p.along(Y)):
+        if (middle := floor.middle) is None:
+            continue
+        flat = end.frame.flat(middle)
+        level = bool(abs(flat[0]) > abs(flat[1]))
+        low = flat[0] if level else flat[1]
+        for bar in (c for c in seen.about(Z) if not c.is_reversed and c.reach[0] < middle.z < c.reach[1]):
+            high = bar.diameter / 2 * (1 if low > 0 else -1)
+            walls = [p for p in seen.planes if _is_wall(p, floor, abs(low), abs(high))]
+            if len(walls) == 2:
+                ends = ((low, 0.0), (high, 0.0)) if level else ((0.0, low), (0.0, high))
+                form: Form = "across" if level else "up"
+                yield Measure("gap", abs(high - low), "end", form, ends, 1, on(floor), on(bar))
+
+
+def _is_wall(plane: Surface, floor: Surface, low: float, high: float) -> bool:
+    """Return whether a plane along the shaft stands on a floor, with its middle between two heights."""
+    if plane.middle is None or floor.middle is None or abs(plane.direction.dot(Z)) > _CLEAR:
+        return False
+    height, away = abs(plane.middle.dot(floor.direction)), (plane.middle - floor.middle).Length
+    return abs(plane.direction.dot(floor.direction)) < _CLEAR and low < height < high and away < high
 
 
 def of_bevels(parts: Sequence[PartSurfaces], section: View) -> Iterator[Measure]:
