@@ -31,7 +31,7 @@ NONE_BY_DEFAULT = {
     "oil_grooves": (1, 7), "pin_hole_diameter": (0.02, 0.3), "lug_width": (0.02, 0.6),
     "oil_hole_diameter": (0.02, 0.3), "oil_groove_width": (0.02, 0.4), "oil_groove_depth": (0.005, 0.1),
     "crush_height": (2e-4, 5e-3), "free_spread": (2e-3, 5e-2), "flange_diameter": (1.2, 2),
-    "bush_wall": (0.005, 0.06), "oil_drilling_diameter": (0.01, 0.06),
+    "wall_reduction": (1e-4, 2e-3), "bush_wall": (0.005, 0.06), "oil_drilling_diameter": (0.01, 0.06),
 }  # fmt: skip
 """Sizes of what there is none of by default, as shares of the required diameter; a count as it is."""
 LIMITS = {  # what a random set must reach: the least share of 300 that makes a solid
@@ -103,7 +103,9 @@ def drawn(cls: type[CadModel], given: dict[str, Any]) -> bool:
     parts = model.build()
     volume = sum(part.volume * len(part.places) for part in parts)
     if result.measures["volume"] != pytest.approx(volume, rel=1e-9):
-        assert volume_of_file(parts, result.step) == pytest.approx(volume, rel=1e-10)
+        # a chamfer meets an eccentric bore in a spline, which the kernel places within 1e-7 mm
+        close = 1e-8 if given.get("wall_reduction") else 1e-10
+        assert volume_of_file(parts, result.step) == pytest.approx(volume, rel=close)
     return True
 
 
