@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import hypot
 
+from cad.drafting.cross_sections import cross_sections
 from cad.drafting.declaration import DrawingDeclaration
 from cad.drafting.definition import Definition
 from cad.drafting.measures import lengths, measures
@@ -48,7 +49,8 @@ class Content:
     def plans(self) -> Iterator[Plan]:
         """Yield the sheets and scales in the order in which they are tried."""
         elsewhere = sum(len(one.dimensions) for one in self.removed)
-        return plans(self.section, self.end, self.dimensions, elsewhere)
+        below = any(one.stations for one in self.removed)
+        return plans(self.section, self.end, self.dimensions, elsewhere, below=below)
 
     def missing(self, without: Dimension | None = None) -> list[str]:
         """Return descriptions of everything that the dimensions leave undefined.
@@ -106,7 +108,10 @@ def contents(
         *measures(bodies, seen, section, end),
         *standing([*seen.values()], section, end),
     ]
-    removed = removed_sections(declared, parameters, bodies, seen, end)
+    removed = [
+        *removed_sections(declared, parameters, bodies, seen, end),
+        *cross_sections(declared, parameters, bodies, seen, end),
+    ]
     for some in ([removed] if removed else []) + [[]]:
         cuts = [(one.height, one.leaning) for one in some]
         features = None if is_assembly(bodies) else Features.of(_defined(declared, seen), end.frame, cuts)

@@ -159,7 +159,7 @@ class Definition:
             if measure.place != "end" or hypot(*points[0]) > CLEAR:
                 return None
             one, other = (degrees(atan2(y, x)) for x, y in points[1:])
-            return station("turn", one), station("turn", other)
+            return self._ray(one), self._ray(other)
         if measure.form in ("circle", "arc"):
             is_about = measure.place == "end" and hypot(*points[0]) < CLEAR
             radius = measure.value / (2 if measure.sort == "diameter" else 1)
@@ -173,6 +173,12 @@ class Definition:
         if measure.sort == "diameter":
             return self._ends("up", 0.0, high) if abs(low + high) < CLEAR else None
         return self._ends("up" if along else "across", low, high)
+
+    def _ray(self, turn: float) -> Station:
+        """Return the station of a direction, or the opposite one on its line if only that is needed."""
+        here, opposite = station("turn", turn), station("turn", turn + 180)
+        is_known = here in self.needed or here in self.optional
+        return opposite if opposite in self.needed and not is_known else here
 
     def _ends(self, direction: Direction, low: float, high: float) -> tuple[Station, Station] | None:
         one, other = self.known(direction, low), self.known(direction, high)

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from math import hypot
 
-from cad.drafting.curves import Point
+from cad.drafting.curves import Curve, Point, joined
 from cad.drafting.dimension_layout import PlacedDimension
 from cad.drafting.letter_width import width_of
 from cad.drafting.page import Page
@@ -53,8 +53,15 @@ def centre_lines(section: View, end: View, bodies: Sequence[Body], plan: Plan) -
     own = [*shaft[1:], *_distinct(of_end)]
     across = _distinct(_longer(axis, over) for axis in end.axes)
     own += [axis for axis in across if not any(_on_one_line(axis, other) for other in own)]
-    moved = [(_right(a, plan.beside), _right(b, plan.beside)) for a, b in own]
-    return Centres([shaft[0], *axes, *crosses, *moved], [((plan.beside, 0.0), radius) for radius in pitch])
+    moved = [(_right(a, plan.beside), _right(b, plan.beside)) for a, b in _beside(own, end)]
+    lines = [*_beside([shaft[0], *axes, *crosses], section), *moved]
+    return Centres(lines, [((plan.beside, 0.0), radius) for radius in pitch])
+
+
+def _beside(lines: Sequence[Segment], view: View) -> list[Segment]:
+    """Return centre lines, each drawn once, where no outline covers them (ISO 128-2)."""
+    curves = joined([Curve([*line]) for line in lines], view.visible)
+    return [(one.points[0], one.points[-1]) for one in curves if one.arc is None and len(one.points) == 2]
 
 
 def pitch_circles(placed: Sequence[PlacedDimension]) -> list[tuple[Point, float]]:

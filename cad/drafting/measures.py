@@ -62,7 +62,7 @@ def measures(
     for one in seen.values():
         results += _of_cylinders(one, section, end)
         results += _of_planes(one, section, end, most)
-        results += _of_flanks(one, end)
+        results += flank_angles(one, end)
     results += _of_axes([c for one in seen.values() for c in one.cylinders if c.along(Z)], section)
     standing = list(_standing(bodies, seen))
     results += _of_arcs(section, standing, {name: one.count for name, one in seen.items()})
@@ -200,6 +200,11 @@ def _of_planes(seen: PartSurfaces, section: View, end: View, most: int) -> Itera
     levels = seen.levels(Z)
     for low, high in _spans(levels if len(levels) <= most else [*levels[: most - 1], levels[-1]]):
         yield length_between(seen, low, high, section)
+    yield from plane_widths(seen, end)
+
+
+def plane_widths(seen: PartSurfaces, end: View) -> Iterator[Measure]:
+    """Yield the distances between planes along the shaft, level or upright in the end view."""
     for axis in (X, Y):
         right, up = end.frame.flat(axis)
         sign = right + up  # one of them is 0
@@ -298,7 +303,7 @@ def _holds(plane: Surface, point: Point, frame: Frame) -> bool:
     return abs((at - plane.point).dot(plane.direction)) < _ARC
 
 
-def _of_flanks(seen: PartSurfaces, end: View) -> Iterator[Measure]:
+def flank_angles(seen: PartSurfaces, end: View) -> Iterator[Measure]:
     """Yield the angles between planes through the shaft's axis, measured on the side of the material."""
     yield from _of_tapers(seen, end)
     flanks = [plane for plane in seen.planes if plane.holds(Z)]

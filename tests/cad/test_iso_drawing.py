@@ -370,11 +370,10 @@ def test_lengths_that_repeat_are_given_once_and_counted() -> None:
 
 def test_a_leader_keeps_out_of_the_views_where_it_can() -> None:
     room = Room((0, 0, 100, 100))
-    room.add((20, 20, 60, 60), is_view=True)
-    assert room.length_in_views((30, 50), (30, 90)) == pytest.approx(10)
-    assert room.length_in_views((0, 40), (100, 40)) == pytest.approx(40)
-    assert room.length_in_views((0, 70), (100, 70)) == 0
-    assert room.length_in_views((10, 10), (30, 30)) == pytest.approx(10 * 2**0.5)
+    room.add_outline([(20, 20), (60, 20), (60, 60), (20, 60), (20, 20)])
+    assert room.outlines_met((30, 50), (30, 90)) == 1
+    assert room.outlines_met((0, 40), (100, 40)) == 2
+    assert room.outlines_met((0, 70), (100, 70)) == 0
 
 
 @pytest.mark.slow
