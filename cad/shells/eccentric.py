@@ -19,7 +19,7 @@ Value = Array | float
 
 
 @units("m", "m", "m", returns="m")
-def offset_of(bore: Value, reduction: Value, height: Value) -> Value:
+def offset_of(bore: Value, reduction: Value, height: Value) -> Array:
     """Return the offset of the axis of an eccentric bore.
 
     Parameters
@@ -33,7 +33,7 @@ def offset_of(bore: Value, reduction: Value, height: Value) -> Value:
 
 
 @units("m", "m", "m", returns="m")
-def reduction_at(bore: Value, offset: Value, height: Value) -> Value:
+def reduction_at(bore: Value, offset: Value, height: Value) -> Array:
     """Return the wall reduction at a height above the joint; the inverse of `offset_of`."""
     return np.sqrt(bore**2 + 2 * offset * (bore - height)) - bore
 

@@ -42,6 +42,12 @@ def if_drawable(length: Array, least: float) -> Array:
     return np.where(drawable(length, least), length, 0 * length)[()]
 
 
+@units("m", "m", returns="m")
+def if_concentric(depth: Array, reduction: Array) -> Array:
+    """Return the depth of a relief, or 0 if the wall reduction says that the bore is eccentric."""
+    return np.where(reduction <= 0, depth, 0 * depth)[()]
+
+
 class ShellParameters(CadModel):
     """Parameters of half shells or of a full bush."""
 
@@ -124,7 +130,7 @@ class ShellParameters(CadModel):
     @derived("mm", "relief depth", symbol="d_r", ge=0, le=100)
     def d_r(self) -> Array:
         """Return the default depth at the joint: a tenth of the lining, or 0 if that cannot be built."""
-        return joints(self.shells) * if_drawable(0.1 * self.t_l, 1.0) * (1 - np.sign(self.delta))
+        return joints(self.shells) * if_concentric(if_drawable(0.1 * self.t_l, 1.0), self.delta)
 
     @derived("mm", "inner chamfer", symbol="c_i", ge=0, le=500)
     def c_i(self) -> Array:

@@ -1,4 +1,4 @@
-"""An eccentric bore has the wall reduction that was asked for, at its height, and the volume of its segments."""
+"""An eccentric bore has the wall reduction that was given, at its height, and the volume of its segments."""
 
 from math import acos, hypot, pi, sqrt
 
