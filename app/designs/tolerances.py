@@ -73,11 +73,11 @@ def not_stated_in(
 
     A value that a `saved` document has already, in a variant if named, is no fault.
     """
-    known = _typed_in(saved, variant) if saved else {}
+    before = _typed_in(saved, variant) if saved else {}
     typed = calculation.typed
     for block in calculation.graph.blocks.values():
         if issubclass(block.cls, CadModel):
-            new = (c for c in block.cells.values() if not c.relations and known.get(c.name) != c.raw)
+            new = (c for c in block.cells.values() if not c.relations and before.get(c.name) != c.raw)
             given = {cell.reference.member: typed[cell.name] for cell in new if cell.name in typed}
             yield from (fault.within(block.name) for fault in not_stated(block.cls, given))
 

@@ -7,7 +7,6 @@ such record: it stated each tolerance of its parameters at faces.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any
 
 from app.plain import JsonObject
 from app.solids.schemas.models import PartFace, StatedTolerance
@@ -58,7 +57,7 @@ def _toleranced(parameters: JsonObject) -> list[str]:
 
 def _stated(faces: Iterable[tuple[str, int]], drawn: str, reason: str) -> StatedTolerance:
     listed = [PartFace(part=part, face=number + 1) for part, number in faces]
-    more: dict[str, Any] = {"faces": listed} if listed else {}
+    more = {"faces": listed} if listed else {}
     where = "faces" if listed else "table"
     detail = _words(listed, drawn, reason)
     return StatedTolerance.model_validate({"where": where, "drawing": drawn, **more, "detail": detail})

@@ -124,7 +124,7 @@ def toleranced(model, rng):
     texts, given = as_text(model.from_quantities(model.example)), {}
     carried, _ = sizes_of(model.from_quantities(texts))
     for name in lengths(model):
-        if name in model.toleranced and name in carried and rng.random() < 0.6:
+        if name in model.toleranced and name in carried and texts[name] != "0 mm" and rng.random() < 0.6:
             given[name] = f"{texts[name]} +{rng.integers(1, 9) / 100}/-0.01 mm"
     return {**texts, **given}, given
 
