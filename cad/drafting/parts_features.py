@@ -256,7 +256,7 @@ class _Reader:
         bore = min(bores, key=lambda c: c.diameter)
         deep = hypot(x, y) + cylinder.diameter / 2 - bore.diameter / 2
         is_wide = hypot(x, y) < cylinder.diameter / 2 < bore.diameter / 2 + _CLEAR
-        if not is_wide:
+        if not is_wide or deep < _CLEAR:
             return False
         edge = relief_height(hypot(x, y), cylinder.diameter / 2, bore.diameter / 2)
         along, at = (self.found.up, edge) if abs(x) > abs(y) else (self.found.across, edge)

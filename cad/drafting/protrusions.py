@@ -14,6 +14,7 @@ from cad.drafting.views import View
 from cad.surfaces import PartSurfaces, Surface, X, Y, Z
 
 _CLEAR = 1e-6  # [mm]
+_SLIGHT = 0.05  # offset of the axis of an eccentric bore at most, as a share of its diameter
 _ARC = 1e-5  # [mm]: how near to its surface an edge of the section lies
 
 
@@ -52,14 +53,18 @@ def of_walls(parts: Sequence[PartSurfaces], section: View) -> Iterator[Measure]:
     """
     left = section.box[0][0]
     rings = [one.rings(Z) for one in parts]
-    for bore in [some[0] for some in rings if some]:
-        low = bore[0].diameter / 2
+    beside = [c for one in parts for c in one.cylinders if c.along(Z) and not c.about(Z)]
+    eccentric = [
+        [c] for c in beside if abs(c.point.dot(X)) < _CLEAR and abs(c.point.dot(Y)) < _SLIGHT * c.diameter
+    ]
+    for bore in [*(some[0] for some in rings if some), *eccentric]:
+        low = bore[0].diameter / 2 - abs(bore[0].point.dot(Y))
         for ring in [ring for some in rings for ring in some]:
             high = ring[0].diameter / 2
             if high > low + _CLEAR:
                 points = ((left, low), (left, high))
                 yield Measure("gap", high - low, "section", "up", points, 1, on(*bore), on(*ring))
-        for circle in (c for one in parts for c in one.cylinders if c.along(Z) and not c.about(Z)):
+        for circle in beside:
             reach = circle.point.dot(X) + circle.diameter / 2
             if abs(circle.point.dot(Y)) < _CLEAR < reach - low:
                 points = ((low, 0.0), (reach, 0.0))

@@ -31,7 +31,7 @@ NONE_BY_DEFAULT = {
     "oil_grooves": (1, 7), "pin_hole_diameter": (0.02, 0.3), "lug_width": (0.02, 0.6),
     "oil_hole_diameter": (0.02, 0.3), "oil_groove_width": (0.02, 0.4), "oil_groove_depth": (0.005, 0.1),
     "crush_height": (2e-4, 5e-3), "free_spread": (2e-3, 5e-2), "flange_diameter": (1.2, 2),
-    "bush_wall": (0.005, 0.06), "oil_drilling_diameter": (0.01, 0.06),
+    "wall_reduction": (1e-4, 2e-3), "bush_wall": (0.005, 0.06), "oil_drilling_diameter": (0.01, 0.06),
     "shoulder_depth": (0.02, 0.4), "bulkhead_thickness": (0.2, 0.45), "bolt_diameter": (0.1, 0.25),
     "dowel_diameter": (0.2, 0.35),
 }  # fmt: skip
@@ -105,7 +105,8 @@ def drawn(cls: type[CadModel], given: dict[str, Any]) -> bool:
     parts = model.build()
     volume = sum(part.volume * len(part.places) for part in parts)
     if result.measures["volume"] != pytest.approx(volume, rel=1e-9):
-        assert volume_of_file(parts, result.step) == pytest.approx(volume, rel=1e-10)
+        # the kernel places the edges of holes and chamfers within 1e-7 mm
+        assert volume_of_file(parts, result.step) == pytest.approx(volume, rel=1e-9)
     return True
 
 
