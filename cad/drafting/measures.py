@@ -23,6 +23,7 @@ Place = Literal["section", "end"]
 
 _CLEAR = 1e-6  # [mm], and as the sine of an angle
 _ARC = 1e-5  # [mm]: how near to its surface an edge of the section lies
+_ECCENTRIC = 0.05  # between axes that enclose a wall, as a share of the inner diameter
 _MOST_LEVELS = 14  # planes across one axis; drawings of more would not be read
 
 
@@ -97,11 +98,10 @@ def _of_cylinders(seen: PartSurfaces, section: View, end: View) -> Iterator[Meas
         elif _within(cylinder, section.frame.towards):
             yield _drilled(cylinder, section, seen.count)
     for one, other in combinations(about, 2):
-        if one.point.cross(Z).sub(other.point.cross(Z)).Length > _CLEAR:
-            continue
         inner, outer = sorted((one, other), key=lambda cylinder: cylinder.diameter)
-        axis = section.frame.flat(one.point)[1]
-        low, high = axis + inner.diameter / 2, axis + outer.diameter / 2
+        if one.point.cross(Z).sub(other.point.cross(Z)).Length > _ECCENTRIC * inner.diameter:
+            continue
+        low, high = (section.frame.flat(c.point)[1] + c.diameter / 2 for c in (inner, outer))
         ends = [_edge_at(section, radius, c.reach) for radius, c in ((low, inner), (high, outer))]
         if high - low > _CLEAR and ends[0] is not None and ends[1] is not None:
             points = ((ends[0], low), (ends[1], high))
