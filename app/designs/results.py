@@ -15,7 +15,7 @@ from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import judged
 from app.designs.network import Block
 from app.designs.result_cells import cells
-from app.designs.roundings import ROUNDED, as_member, rounded
+from app.designs.roundings import ROUNDED, RoundedValue, as_member, rounded
 from app.designs.variants.names import BASE
 from app.designs.variants.verdict import VARIANT, merged
 from app.designs.worksheet import remember
@@ -59,10 +59,10 @@ def stored(
         "analyses": analyses(calculation),
         **rendered(criteria),
     }
-    results[TABLE] = {BASE: cells(calculation)} | {
-        outcome.name: cells(outcome.calculation) for outcome in outcomes if outcome.calculation
-    }
     if outcomes:
+        results[TABLE] = {BASE: cells(calculation)} | {
+            outcome.name: cells(outcome.calculation) for outcome in outcomes if outcome.calculation
+        }
         base = _variant({}, own, single_outputs(calculation), {}, None, rounded(calculation))
         results[VARIANTS] = {BASE: base, **{outcome.name: _outcome(outcome) for outcome in outcomes}}
         results |= _governing(criteria, outcomes, results["steps"])
@@ -70,7 +70,7 @@ def stored(
 
 
 def _governing(
-    criteria: Sequence[Judgement], outcomes: Sequence[Outcome], own: Mapping[str, JsonObject]
+    criteria: Sequence[Judgement], outcomes: Sequence[Outcome], own: Mapping[str, object]
 ) -> JsonObject:
     """Return the steps of the governing variant that differ from the design's own, for its report.
 
@@ -176,7 +176,7 @@ def _variant(
     outputs: Mapping[str, JsonObject],
     failures: Mapping[str, JsonObject],
     problem: JsonObject | None,
-    chosen: Sequence[JsonObject],
+    chosen: Sequence[RoundedValue],
 ) -> JsonObject:
     """Return one variant in the form that a revision stores, without empty members."""
     parts: JsonObject = {

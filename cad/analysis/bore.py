@@ -70,7 +70,7 @@ class BoredSolid:
 
 
 def read_bored(step: bytes, place: BorePlace) -> BoredSolid:
-    """Read the solids of a STEP file, join them, and keep one half.
+    """Read the solids about the bore of a STEP file, join them, and keep one half.
 
     Raises
     ------
@@ -80,7 +80,7 @@ def read_bored(step: bytes, place: BorePlace) -> BoredSolid:
     with TemporaryDirectory() as folder:
         path = Path(folder, "model.step")
         path.write_bytes(step)
-        solids = list(OCCGeometry(str(path)).shape.solids)
+        solids = list(OCCGeometry(str(path)).shape.solids)[: place.solids or None]
     whole = solids[0]
     for other in solids[1:]:
         whole = whole + other

@@ -105,7 +105,8 @@ def _pins(seen: PartSurfaces, span: tuple[float, float], frame: Frame) -> tuple[
     beside = [c for c in _along(seen) if _is_beside(c)]
     within = [c for c in beside if span[0] < sum(c.reach) / 2 < span[1]]
     middle = sum(span) / 2
-    nearest = sorted(beside, key=lambda c: (abs(sum(c.reach) / 2 - middle), -c.diameter))[:1]
+    next_to = [c for c in beside if min(abs(a - b) for a in span for b in c.reach) < c.diameter / 4]
+    nearest = sorted(next_to, key=lambda c: (abs(sum(c.reach) / 2 - middle), -c.diameter))[:1]
     points = (frame.flat(c.point) for c in within or nearest)
     return tuple(dict.fromkeys((round(x, 4) + 0.0, round(y, 4) + 0.0) for x, y in points))
 

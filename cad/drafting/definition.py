@@ -132,6 +132,8 @@ class Definition:
 
     def _adds_own(self, measure: Measure) -> bool:
         sort = measure.sort
+        if sort == "gap":
+            return self._adds_wall(measure)
         if sort not in ("diameter", "radius", "angle", "chamfer", "width") or self.is_pitch_circle(measure):
             return False
         own: Own = (sort, round(measure.value, 4))
@@ -140,6 +142,25 @@ class Definition:
         self.sized |= faces
         self.given.add(own)
         return is_new
+
+    def _adds_wall(self, measure: Measure) -> bool:
+        """Return whether a wall about an axis beside the shaft gives one diameter from another."""
+        low, high = sorted(point[1] for point in measure.points)
+        holes = self.features.holes
+        inner, outer = (
+            {
+                (one.axis, round(one.diameter, 4))
+                for one in holes
+                if abs(one.axis[1] + one.diameter / 2 - at) < CLEAR
+            }
+            for at in (low, high)
+        )
+        for axis, diameter in inner:
+            both = {("diameter", diameter), *(("diameter", d) for other, d in outer if other == axis)}
+            if len(both) == 2 and len(new := both - self.given) == 1:
+                self.given |= new  # type: ignore[arg-type]
+                return True
+        return False
 
     def is_pitch_circle(self, measure: Measure) -> bool:
         """Return whether a diameter is that of a circle about the shaft through the axes of holes."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice, product
-from math import atan2, cos, hypot, pi, radians, sin
+from math import atan2, cos, dist, hypot, pi, radians, sin
 
 import numpy as np
 
@@ -27,6 +27,7 @@ GAP = 0.9  # between a dimension line and its words [mm on paper]
 EXTENSION = 1.5  # of an extension line beyond its dimension line [mm on paper]
 
 _ARROWS = 7.0  # shortest dimension line with its arrows within [mm on paper]
+_NARROW = radians(15)  # angle whose words stand beside it
 _TAIL = 6.5  # of a line with its arrows outside [mm on paper]
 _FIRST = 10.0  # from the view to its first dimension line [mm on paper]
 _MOST_LANES = 40
@@ -292,6 +293,7 @@ class DimensionLayout:
 
     def _across_angle(self, one: Dimension, label: Label, right: float) -> Iterator[Try]:
         """Yield places for the text outside a dimension arc between two legs or their extensions."""
+        yield from self._beside_angle(one, label, right)
         corner, *legs = self._on_paper(one, right)
         turns = [atan2(y - corner[1], x - corner[0]) for x, y in legs]
         opening = (turns[1] - turns[0]) % (2 * pi)
@@ -314,6 +316,25 @@ class DimensionLayout:
             placed = PlacedDimension(one, label, self.plan.at(*base), None, right)
             yield around(words, width, height), placed, lines[:1] + _nearest(lines[1:])
 
+    def _beside_angle(self, one: Dimension, label: Label, right: float) -> Iterator[Try]:
+        """Yield the words beside a narrow angle, at one end of an arc that runs across both legs."""
+        corner, *legs = self._on_paper(one, right)
+        low, high = sorted(atan2(y - corner[1], x - corner[0]) for x, y in legs)
+        middle = dist(corner, legs[0])
+        if high - low > _NARROW:
+            return
+        width, height = label.width(TEXT), label.height(TEXT)
+        for away in self._distances():
+            for radius in (middle + away - _NEAREST, middle - away):
+                tail, beyond = _TAIL / radius, (_TAIL + GAP + width / 2) / radius
+                steps = [low - tail + (high - low + 2 * tail) * i / 24 for i in range(25)]
+                arc = [_polar(corner, radius, turn) for turn in steps]
+                base = self.plan.at(*_polar(corner, radius, (low + high) / 2))
+                for turn in (high + beyond, low - beyond):
+                    words = _polar(corner, radius, turn)
+                    placed = PlacedDimension(one, label, base, self.plan.at(*words), right)
+                    yield around(words, width + 2 * GAP, height + 2 * GAP), placed, [arc]
+
     def _distances(self) -> Iterator[float]:
         """Yield distances from a feature to its text [mm on paper], more of them on a larger sheet."""
         away, farthest = _NEAREST, _FARTHEST * self.plan.format.width / FORMATS[0].width
@@ -332,6 +353,10 @@ class DimensionLayout:
                 y = middle[1] + (away + height / 2) * sin(radians(turn))
                 placed = PlacedDimension(one, label, self.plan.at(*middle), self.plan.at(x, y), right)
                 yield around((x, y), width + 1.0, height + 1.0), placed, [[middle, (x, y)]]
+
+
+def _polar(corner: Point, radius: float, turn: float) -> Point:
+    return corner[0] + radius * cos(turn), corner[1] + radius * sin(turn)
 
 
 def _middle(low: float, high: float, width: float, others: list[float]) -> float:

@@ -23,6 +23,7 @@ Place = Literal["section", "end"]
 
 _CLEAR = 1e-6  # [mm], and as the sine of an angle
 _ARC = 1e-5  # [mm]: how near to its surface an edge of the section lies
+_ECCENTRIC = 0.05  # between axes that enclose a wall, as a share of the inner diameter
 _MOST_LEVELS = 14  # planes across one axis; drawings of more would not be read
 
 
@@ -93,13 +94,15 @@ def _of_cylinders(seen: PartSurfaces, section: View, end: View) -> Iterator[Meas
         if cylinder.along(Z):
             turned = cylinder.turned(Z)
             yield from _lengthwise(turned, section, end, seen.count * counts[turned.face])
-            about += [turned] if cylinder.about(Z) else []
+            about += [turned] if _within(cylinder, section.frame.towards) else []
         elif _within(cylinder, section.frame.towards):
             yield _drilled(cylinder, section, seen.count)
     for one, other in combinations(about, 2):
         inner, outer = sorted((one, other), key=lambda cylinder: cylinder.diameter)
-        low, high = inner.diameter / 2, outer.diameter / 2
-        ends = [_edge_at(section, c.diameter / 2, c.reach) for c in (inner, outer)]
+        if one.point.cross(Z).sub(other.point.cross(Z)).Length > _ECCENTRIC * inner.diameter:
+            continue
+        low, high = (section.frame.flat(c.point)[1] + c.diameter / 2 for c in (inner, outer))
+        ends = [_edge_at(section, radius, c.reach) for radius, c in ((low, inner), (high, outer))]
         if high - low > _CLEAR and ends[0] is not None and ends[1] is not None:
             points = ((ends[0], low), (ends[1], high))
             yield Measure("gap", high - low, "section", "up", points, 1, on(inner), on(outer))
@@ -312,6 +315,7 @@ def _holds(plane: Surface, point: Point, frame: Frame) -> bool:
 
 def flank_angles(seen: PartSurfaces, end: View) -> Iterator[Measure]:
     """Yield the angles between planes through the shaft's axis, measured on the side of the material."""
+    yield from _of_tapers(seen, end)
     flanks = [plane for plane in seen.planes if plane.holds(Z)]
     legs = [(leg, plane) for plane in flanks if (leg := _leg(plane, end))]
     for (one, plane), (other, second) in combinations(legs, 2):
@@ -320,6 +324,31 @@ def flank_angles(seen: PartSurfaces, end: View) -> Iterator[Measure]:
             legs_of = (one, other) if turn > 0 else (other, one)
             points = ((0.0, 0.0), *legs_of)
             yield Measure("angle", abs(turn), "end", "angle", points, 1, on(plane), on(second))
+
+
+def _of_tapers(seen: PartSurfaces, end: View) -> Iterator[Measure]:
+    """Yield the angles between planes along the shaft that are mirrored in the upright centre line."""
+    askew = [p for p in seen.planes if abs(p.direction.dot(Z)) < _CLEAR and not p.holds(Z)]
+    lines = [(p, *end.frame.flat(p.direction), p.point.dot(p.direction)) for p in askew]
+    right = [one for one in lines if one[1] * one[3] > 0 and min(abs(one[1]), abs(one[2])) > _CLEAR]
+    for plane, across, up, away in right:
+        lean, at = up / across, away / across  # x = at - lean y
+        for other, u, v, d in lines:
+            if abs(u) > _CLEAR and abs(d / u + at) < _ARC and abs(v / u + lean) < _CLEAR:
+                x, y = _middle(end, at, lean)
+                points = (0.0, at / lean), (x, y), (-x, y)
+                angle = 2 * degrees(atan2(abs(lean), 1.0))
+                yield Measure("angle", angle, "end", "angle", points, 1, on(plane), on(other))
+
+
+def _middle(end: View, at: float, lean: float) -> Point:
+    """Return the middle of the longest visible line x = at - lean y."""
+    runs = [
+        [y for x, y in curve.points if abs(x + lean * y - at) < 1e-4 and x * at > 0] for curve in end.visible
+    ]
+    run = max(runs, key=lambda ys: max(ys) - min(ys) if ys else 0.0, default=[])
+    y = (min(run) + max(run)) / 2 if run else 0.0
+    return at - lean * y, y
 
 
 def _leg(plane: Surface, end: View) -> Point | None:

@@ -154,7 +154,10 @@ class Page:
                 )
             case "arc":
                 return self.space.add_radius_dim(points[0], radius=measure.value, location=base, **level)
-        return self.space.add_angular_dim_3p(base, *_counter_clockwise(points), **style)
+        drawn = self.space.add_angular_dim_3p(base, *_counter_clockwise(points), **style)
+        if placed.words is not None:
+            drawn.set_location(placed.words)
+        return drawn
 
     def _led(self, dimension: Any, placed: PlacedDimension) -> None:
         """Draw an arc's or circle's dimension as a leader with its words, in place of what ezdxf draws.

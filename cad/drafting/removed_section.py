@@ -10,7 +10,7 @@ parameters that are dimensioned there instead of in the other views.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
@@ -33,7 +33,7 @@ from cad.drafting.section import CLEAR, Cut, Frame, curve_of, cut_of, faces_acro
 from cad.drafting.symbols import arrow
 from cad.drafting.views import View
 from cad.step import Body
-from cad.surfaces import PartSurfaces, Y, Z
+from cad.surfaces import Face, PartSurfaces, Surface, Y, Z
 
 LETTERS = 5.0  # height of the letters that name a section [mm on paper]
 _MARGIN = 12.0  # about a section, beside its lanes [mm on paper]
@@ -54,6 +54,7 @@ class RemovedSection:
     height: float
     dimensions: tuple[Dimension, ...]
     stations: tuple[float, ...] = ()
+    leaning: frozenset[Face] = frozenset()  # planes that it cuts, of a bar that tapers
 
     @property
     def names(self) -> set[str | None]:
@@ -112,12 +113,24 @@ def _removed(
         return None
     view = View(frame, curves, [], [], [cut_of(part, face, frame) for face in faces], [], straight)
     wanted = {name: parameters[name] for name in shows if name in parameters}
-    shown = [*_measures(view, seen[body.name])]
+    leaning = [*_leaning(view, seen[body.name], height)]
+    shown = [*_measures(view, seen[body.name], leaning)]
     dimensions, _ = matched(wanted, declared.sizes, shown, declared.limits)
-    return RemovedSection(letter, view, height, tuple(dimensions)) if dimensions else None
+    planes = on(*(plane for _, plane in leaning))
+    return RemovedSection(letter, view, height, tuple(dimensions), leaning=planes) if dimensions else None
 
 
-def _measures(view: View, seen: PartSurfaces) -> Iterator[Measure]:
+def _leaning(view: View, seen: PartSurfaces, height: float) -> Iterator[tuple[float, Surface]]:
+    """Yield planes along the shaft that are askew, with their places on edges of the section."""
+    places = {one[0] for one, other in view.edges if abs(one[0] - other[0]) < CLEAR}
+    for plane in seen.planes:
+        right, up = view.frame.right.dot(plane.direction), plane.direction.y
+        if abs(plane.direction.dot(Z)) < CLEAR < min(abs(right), abs(up)):
+            at = (plane.point.dot(plane.direction) - up * height) / right
+            yield from ((place, plane) for place in places if abs(place - at) < CLEAR)
+
+
+def _measures(view: View, seen: PartSurfaces, leaning: Sequence[tuple[float, Surface]]) -> Iterator[Measure]:
     """Yield the distances between parallel straight edges, measured at their lowest or leftmost ends."""
     forms: tuple[tuple[int, Form], ...] = ((0, "across"), (1, "up"))
     for along, form in forms:
@@ -128,10 +141,17 @@ def _measures(view: View, seen: PartSurfaces) -> Iterator[Measure]:
                 feet[place] = min(feet.get(place, foot), foot)
         axis = view.frame.up if along else view.frame.right
         for low, high in combinations(sorted(feet), 2):
-            sides = (on(*seen.planes_at(axis, level)) for level in (low, high))
+            sides = (_faces_at(axis, level, seen, () if along else leaning) for level in (low, high))
             ends = ((low, feet[low]), (high, feet[high]))
             points = ends if along == 0 else tuple((foot, place) for place, foot in ends)
             yield Measure("width", high - low, "section", form, points, 1, *sides)
+
+
+def _faces_at(
+    axis: Vector, level: float, seen: PartSurfaces, leaning: Iterable[tuple[float, Surface]]
+) -> frozenset[Face]:
+    """Return the faces at a level of a section: planes across the axis, and those that are askew."""
+    return on(*seen.planes_at(axis, level), *(plane for at, plane in leaning if abs(at - level) < CLEAR))
 
 
 def mark(page: Page, room: Room, removed: RemovedSection, section: View) -> None:

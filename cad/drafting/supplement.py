@@ -104,7 +104,8 @@ class Supplement:
             placed, others = groups[0] if groups else [], groups[1:]
             if not others:
                 return
-            yield self._between(*(self._mirrored(others) or self._pair(direction, placed, others)))
+            pairs = groups if direction == "along" else others  # nothing is on the axis along the shaft
+            yield self._between(*(self._mirrored(pairs) or self._pair(direction, placed, others)))
 
     def _mirrored(self, others: Sequence[Sequence[Station]]) -> tuple[Station, Station] | None:
         """Return the widest pair of stations that are symmetric about a centre line and not yet located."""
@@ -147,8 +148,10 @@ class Supplement:
 
     def _place(self, along: int, at: float, side: float) -> float:
         """Return the other coordinate of a level: that of a hole on it, or of the side of the view."""
-        axes = [hole.axis for hole in self.definition.features.holes if abs(hole.axis[along] - at) < _CLEAR]
-        return axes[0][1 - along] if axes else side
+        features = self.definition.features
+        places = [hole.axis[1 - along] for hole in features.holes if abs(hole.axis[along] - at) < _CLEAR]
+        places += [x for height, x in features.bars.items() if along and abs(height - at) < _CLEAR]
+        return places[0] if places else side
 
     def _level(self, low: float, high: float) -> Measure:
         points = (low, foot(self.section, low)), (high, foot(self.section, high))
