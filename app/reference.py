@@ -39,3 +39,19 @@ class Reference(NamedTuple):  # a tuple, because millions are hashed
     def own_name(self) -> str:
         """Return the name without its block and analysis, such as `stiffness` or `scale`."""
         return self.block if self.output is None else self.output
+
+
+class ItemReference(NamedTuple):
+    """A value of a design, or one item of a list, counted from 1: `torsion.natural_frequencies[1]`."""
+
+    reference: Reference
+    item: int | None = None
+
+    @classmethod
+    def parse(cls, name: str) -> ItemReference:
+        """Return the reference for a name with or without the number of an item."""
+        whole, _, number = name.removesuffix("]").partition("[")
+        return cls(Reference.parse(whole), int(number) if number else None)
+
+    def __str__(self) -> str:
+        return f"{self.reference}[{self.item}]" if self.item else str(self.reference)

@@ -51,7 +51,7 @@ class Component:
     holds: tuple[str, ...] = ()  # ids of the models from which it is built
 
     def parameters(self, numbers: Mapping[str, float]) -> Iterator[Parameter]:
-        """Return the position of the part as parameters of the assembly, with default values."""
+        """Return the position of the part as parameters of the assembly, with their default values."""
         for key in (*SHIFTS, *TURNS):
             unit, bound = ("mm", FARTHEST) if key in SHIFTS else ("deg", 360.0)
             words = f"{self.name} {key.replace('_', ' about ')}".replace("_", " ")
@@ -68,16 +68,16 @@ class AssemblyDescription(Description):
     components: tuple[Component, ...] = ()
 
     def bases(self) -> tuple[type[CadModel], ...]:
-        """Return the base classes: that of assemblies, and that of the base model."""
+        """Return the base classes: the class of assemblies, and the class of the base model."""
         return (AssemblyModel, *([base_of(self.base)] if self.base else []))
 
     def example(self) -> Mapping[str, Any]:
-        """Return the example of the base model; positions are as in the description."""
+        """Return the example of the base model; the positions are those of the description."""
         return base_of(self.base).example if self.base else super().example()
 
     @property
     def trust(self) -> str:
-        """Return the limits of the checks on the solids, in plain words."""
+        """Return in plain words which checks the solids do not pass through."""
         names = ", ".join(one.name for one in self.components)
         own = f"{self.base[0]} is checked as ever. " if self.base else ""
         return (
@@ -123,7 +123,7 @@ class AssemblyModel(ImportedModel):
         return dict(super(ImportedModel, self).dimensions(own))
 
     def component_of(self, part: str) -> str | None:
-        """Return the fixed part to which a solid of this name belongs; None for a solid of the base model."""
+        """Return the fixed part to which a solid belongs; None for a solid of the base model."""
         name = part.partition(_WITHIN)[0]
         return name if any(name == one.name for one in self.imported.components) else None
 
@@ -143,21 +143,29 @@ class AssemblyModel(ImportedModel):
         """Return whether the description allows two of its solids to overlap."""
         return self._allows(one, other) or self._allows(other, one)
 
+    def movers(self, part: str) -> tuple[str, ...]:
+        """Return the shifts of the fixed part to which a solid belongs, and its turns that are not 0."""
+        if (component := self.component_of(part)) is None:
+            return ()
+        place = self.place(component)
+        turns = [key for key in TURNS if getattr(place, key)]
+        return tuple(f"{component}_{key}" for key in (*SHIFTS, *turns))
+
     def shaft(self) -> Shaft | None:
-        """Return None, because the finite elements need one solid, not an assembly."""
+        """Return None, because finite-element analyses need a single solid, not an assembly."""
         return None
 
     @classmethod
     def is_throw(cls) -> bool:
-        """Return False, because the finite elements need one solid."""
+        """Return False, because finite-element analyses need a single solid."""
         return False
 
     def throw_sizes(self) -> Crank | None:
-        """Return None, because the finite elements need one solid."""
+        """Return None, because finite-element analyses need a single solid."""
         return None
 
     def _allows(self, one: str, other: str) -> bool:
-        """Return whether the fixed part of one solid may overlap the other solid or the part of it."""
+        """Return whether the fixed part of one solid may overlap the other solid or its part."""
         name = self.component_of(one)
         component = next((c for c in self.imported.components if c.name == name), None)
         if component is None:
@@ -166,7 +174,7 @@ class AssemblyModel(ImportedModel):
         return not {other, self.component_of(other), *parts}.isdisjoint(component.may_overlap)
 
     def _require_known(self, parts: Sequence[Part]) -> None:
-        """Refuse a `may_overlap` with an unknown part.
+        """Refuse a `may_overlap` that names an unknown part.
 
         Parts that other parameters of the model create are known.
 
@@ -239,7 +247,7 @@ class AssemblyModel(ImportedModel):
 
 
 def _solids_of(component: Component, step: bytes) -> list[Part]:
-    """Return the solids of a fixed part: a single one under its name, several under separate names."""
+    """Return the solids of a fixed part: a single one has the part's name, several have separate names."""
     try:
         parts = list(parts_of_step(step))
     except (UnreadableStep, GeometryError) as error:
@@ -263,7 +271,7 @@ def base_of(base: tuple[str, int]) -> type[CadModel]:
 
 
 def assembly_of(read: Mapping[str, Any]) -> AssemblyDescription:
-    """Return the description parsed from its JSON; the parameters are already parsed."""
+    """Return the description in a JSON text; its parameters were parsed beforehand."""
     components = tuple(_component(one) for one in read["components"])
     base = read["base"]
     return AssemblyDescription(
@@ -283,7 +291,7 @@ def described(
     base: tuple[str, int] | None,
     components: Mapping[Component, Mapping[str, float]],
 ) -> AssemblyDescription:
-    """Return the description of an assembly; the positions of `components` are numbers in mm and deg."""
+    """Return the description of an assembly; positions in `components` are plain numbers in mm and deg."""
     return AssemblyDescription(
         program="assembly",
         file=file,

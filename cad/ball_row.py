@@ -46,7 +46,10 @@ class Ring:
         return self.groove_radius**2 * (half - sin(half) * cos(half))
 
     def solid(self, pitch_radius: float, side: int) -> Shape:
-        """Return the section revolved about z as one profile; a cut with a torus would vary between runs."""
+        """Return the section revolved about z as one profile.
+
+        Cutting the groove with a torus would give bytes that vary between runs.
+        """
         section = self._outline(lambda s, z: Vector(pitch_radius + side * s, 0, z))
         return Solid.revolve(section, 360, Vector(0, 0, 0), Vector(0, 0, 1))
 
@@ -60,7 +63,7 @@ class Ring:
         return 2 * pi * (area * pitch_radius + side * moment)
 
     def _outline(self, place: Callable[[float, float], Vector]) -> Face:
-        """Return the section as a face; `place` maps (s, z) to space."""
+        """Return the section as a face; `place` converts (s, z) to points in space."""
         half, edge = self.width / 2, self.groove_radius * sin(self._half_angle)
         ends = place(self.shoulder, -edge), place(self.shoulder, edge)
         corners = [
@@ -98,7 +101,7 @@ class BallRow(CadModel):
 
     @formula("mm", "groove radius", symbol="r_g", source="conformity 0.52, Harris and Kotzalas 2006")
     def r_g(self) -> Array:
-        """Return slightly more than half the ball diameter."""
+        """Return the groove radius: slightly more than half the ball diameter."""
         return 0.52 * self.D_w
 
     @require("outer_diameter", "inner_diameter", remedy="make the outer diameter larger, or omit it")
@@ -124,7 +127,7 @@ class BallRow(CadModel):
         return 1.01 * self.D_w <= self.D_pw * np.sin(pi / self.n)
 
     def ring(self, shoulder: float, chamfer: float) -> Ring:
-        """Return the cross-section that both rings share; one faces inwards, the other outwards."""
+        """Return the cross-section of the rings; the two rings are mirror images of each other."""
         return Ring(
             shoulder=shoulder,
             back=mm(self.h) / 2,

@@ -62,7 +62,7 @@ def check_box(model: CadModel, measured: Box) -> None:
 
 
 def check_overlaps(model: CadModel, bodies: Sequence[Body]) -> None:
-    """Check that no two mated parts overlap, and no solids of an imported model that did not at the import.
+    """Check that no two mated parts overlap, and that imported solids overlap only as at the import.
 
     Raises
     ------
@@ -80,7 +80,8 @@ def check_overlaps(model: CadModel, bodies: Sequence[Body]) -> None:
 def compared(model: CadModel, bodies: Sequence[Body], report: Report) -> tuple[Clearance, ...]:
     """Return clearances and overlaps between the fixed parts of an assembly and all other parts.
 
-    If more than `MOST_NAMED` pairs interfere, the comparison stops: `check_clearances` refuses them.
+    The comparison stops as soon as more than `MOST_NAMED` pairs interfere, because `check_clearances` then
+    refuses the assembly.
     """
     between = list[Clearance]()
     wrong = 0
@@ -98,19 +99,23 @@ def check_clearances(model: CadModel, between: Sequence[Clearance]) -> None:
     Raises
     ------
     GeometryError
-        `interference`, naming the parts and their shared volume.
+        `interference`, naming the parts, their shared volume, and the parameters that move them.
     """
     wrong = [one for one in between if _interferes(model, one)]
     if wrong:
         listed = "; ".join(map(str, wrong[:MOST_NAMED]))
         more = "; and at least one more" if len(wrong) > MOST_NAMED else ""
-        raise GeometryError("interference", f"parts of {model.id} interfere: {listed}{more}", model.inputs)
+        parts = dict.fromkeys(part for one in wrong for part in (one.one, one.other))
+        movers = dict.fromkeys(name for part in parts for name in model.movers(part))
+        detail = f"parts of {model.id} interfere: {listed}{more}"
+        raise GeometryError("interference", f"{detail}. They are moved by {', '.join(movers)}", movers)
 
 
 def between_parts(model: CadModel, between: Sequence[Clearance]) -> dict[str, float]:
     """Return the smallest distance [mm] of each fixed part from all other parts, and the shared volume [mm³].
 
-    The distance is 0 if the part touches or overlaps another. A part without comparisons has neither value.
+    The distance is 0 if the part touches or overlaps another one. A part that was not compared has neither
+    value.
     """
     measures: dict[str, float] = {}
     for one in between:
@@ -149,9 +154,10 @@ def check_places(model: CadModel, parts: Sequence[Part], bodies: Sequence[Body])
 
 
 def check_dimensions(model: CadModel, seen: Mapping[str, PartSurfaces]) -> dict[str, Dimension]:
-    """Compare every parameter that the solid shows with the requested value; return them by API name.
+    """Compare every parameter that the solid shows with the requested value.
 
-    Each item of a list is compared; a single number applies to all items.
+    Return the measured values by API name. Each item of a list is compared; a single number applies to all
+    items.
 
     Raises
     ------
@@ -192,7 +198,7 @@ def _check_body(model: CadModel, part: Part, one: BodyMeasures) -> None:
     if one.solids != 1:
         raise refuse("not_one_solid", f"must be one solid, not {one.solids}")
     if not one.valid:
-        raise refuse("invalid_solid", "is not a valid solid: its faces do not close or cross each other")
+        raise refuse("invalid_solid", "is not a valid solid: its faces leave gaps or cross each other")
     if not (isfinite(one.volume) and isfinite(part.volume)):
         raise refuse(
             "not_finite", f"has no finite volume (expected {part.volume} mm³, found {one.volume} mm³)"

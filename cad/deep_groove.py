@@ -74,9 +74,9 @@ def width_by_designation(designation: str) -> Array:
 
 @units("m", "m", "1", returns="N")
 def dynamic_capacity_ISO_281_2007(D_w: Array, D_pw: Array, Z: Array) -> Array:
-    """Return the dynamic load rating C = b_m f_c Z^(2/3) D_w^1.8 [N], D_w in mm.
+    """Return the dynamic load rating C = b_m f_c Z^(2/3) D_w^1.8 [N], with D_w in mm.
 
-    Above 25.4 mm C = b_m f_c Z^(2/3) 3.647 D_w^1.4.
+    For balls above 25.4 mm it is C = b_m f_c Z^(2/3) 3.647 D_w^1.4.
     """
     ball = np.asarray(D_w) * 1e3
     size = np.where(ball <= LARGE_BALL, ball**1.8, 3.647 * ball**1.4)
@@ -93,7 +93,7 @@ def static_factor_ISO_76_2006(D_w: Array, D_pw: Array) -> Array:
 
 @units("1", "1", "m", returns="N")
 def static_capacity_ISO_76_2006(f_0: Array, Z: Array, D_w: Array) -> Array:
-    """Return the static load rating C0 = f_0 Z D_w² [N], D_w in mm."""
+    """Return the static load rating C0 = f_0 Z D_w² [N], with D_w in mm."""
     return f_0 * Z * (np.asarray(D_w) * 1e3) ** 2
 
 

@@ -34,7 +34,7 @@ class Examination:
 
 
 def examine(text: str, id: str, drawn: ProgramResult) -> Examination:
-    """Return what a build of a model from its own file finds.
+    """Return the findings of a trial build of a model from its own file.
 
     Parameters
     ----------
@@ -43,14 +43,14 @@ def examine(text: str, id: str, drawn: ProgramResult) -> Examination:
     id
         The id that the model will have.
     drawn
-        The shape from its program, or its STEP file.
+        The shape from the program that built it, or from its STEP file.
 
     Raises
     ------
     GeometryError
         As `cad.regenerate.regenerate_shape` does; `no_solid` if the file contains none.
     UnreadableStep
-        If the file is no STEP file.
+        If the file is not a STEP file.
     """
     shape = class_of(text, id, 1).from_quantities({})
     shape.take(drawn)
@@ -75,7 +75,7 @@ def examine(text: str, id: str, drawn: ProgramResult) -> Examination:
 
 
 def _rewritten(parts: Sequence[Part], bodies: Sequence[Body]) -> str:
-    """Return the sentence about the change of volumes and numbers of faces by writing and reading back."""
+    """Return the sentence about changes of volumes and face counts when the solids are rewritten."""
     read = {body.name: body for body in bodies}
     change = max(abs(measure(read[one.name]).volume / one.volume - 1) for one in parts)
     before = sum(len(one.solid.Faces()) for one in parts)
@@ -99,14 +99,14 @@ def _loose(sent: Sequence[Body]) -> Iterator[str]:
 
 
 def _names(sent: Sequence[Body], drawn: ProgramResult) -> list[tuple[str, tuple[str, ...]]]:
-    """Return the names of all solids, and of their positions, as the file has them."""
+    """Return the names of all solids, and of their positions, as they are in the file."""
     if drawn.step:
         return [(body.name, body.called) for body in sent for _ in body.shape.Solids()]
     return [(one.name, ()) for one in drawn.parts]
 
 
 def _renamed(names: Sequence[tuple[str, tuple[str, ...]]], parts: Sequence[Part]) -> Iterator[str]:
-    """Yield a sentence about solids and positions that have other names than in the file."""
+    """Yield a sentence about solids and positions whose names differ from those in the file."""
     changed = dict[tuple[str, str], None]()
     for (name, called), part in zip(names, parts, strict=True):
         changed[name, part.name] = None

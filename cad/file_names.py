@@ -11,7 +11,7 @@ _OTHER = re.compile(r"[^A-Za-z0-9.-]+")
 
 
 def plain_name(text: str) -> str:
-    """Return a text as part of a file name in ASCII: accents are removed, other characters become `_`."""
+    """Return a text as an ASCII part of a file name: accents are removed, other characters become `_`."""
     letters = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
     return _ends(_OTHER.sub("_", letters))
 

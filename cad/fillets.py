@@ -34,7 +34,7 @@ class Ring:
         return np.asarray(inside & (points[:, 2] >= self.low) & (points[:, 2] <= self.high))
 
     def sectors(self, points: Array) -> Integers:
-        """Return the numbers of the sectors round the axis in which points [n, 3] lie."""
+        """Return the numbers of the sectors around the axis in which points [n, 3] lie."""
         angle = np.arctan2(points[:, 1], points[:, 0] - self.axis) % (2 * pi)
         return np.asarray(np.minimum(angle * _SECTORS / (2 * pi), _SECTORS - 1).astype(int))
 
@@ -56,7 +56,7 @@ class Crank:
         return self.pin_length - 2 * self.fillet
 
     def rings(self) -> tuple[Ring, ...]:
-        """Return the regions of the four fillets: of pin and journals, at the lower and the upper web."""
+        """Return the regions of the four fillets: of pin and journal, at the lower and upper web."""
         margin = _MARGIN * self.fillet
         half, outer = self.pin_length / 2, self.pin_length / 2 + self.web_thickness
         spans = ((self.throw, self.pin_radius, half - self.fillet), (0.0, self.journal_radius, outer))

@@ -36,7 +36,7 @@ class Header:
 
     @property
     def title(self) -> str:
-        """Return a title of one line for readers."""
+        """Return a one-line title for readers."""
         return f"Crankwright {self.model} version {self.version}"
 
 
@@ -68,13 +68,13 @@ def read_header(step: bytes) -> Header | None:
 
 
 def _continued(name: str, value: str) -> list[str]:
-    """Return the further strings of a long value; each repeats the parameter name with a plus sign."""
+    """Return the additional strings of a long value; each begins with the parameter name and a plus sign."""
     places = range(_LONGEST_PART, len(value), _LONGEST_PART)
     return [f"{name}+: {value[at : at + _LONGEST_PART]}" for at in places]
 
 
 def _joined(strings: list[str]) -> dict[str, str]:
-    """Return the parameters, joined from their strings."""
+    """Return the parameters; a value in several strings is joined."""
     parts: dict[str, list[str]] = {}
     for string in strings:
         name, _, value = string.partition(": ")

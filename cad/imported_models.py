@@ -85,7 +85,7 @@ class Ends:
 
     @staticmethod
     def of(read: Mapping[str, Any]) -> Ends:
-        """Return the ends as FreeCAD's process or a description's JSON states them."""
+        """Return the ends, given in the form of FreeCAD's process or of a description's JSON."""
         parts = tuple((str(name), int(count)) for name, count in read["parts"])
         return Ends(parts, tuple(map(str, read["inner"])))
 
@@ -108,7 +108,7 @@ class Description:
     def text(self) -> str:
         """Return the description as canonical JSON.
 
-        Fields that later versions of the program added are left out while they are empty, so that older
+        Fields that later versions of the program added are omitted while they are empty, so that older
         descriptions keep their text and digest.
         """
         read = asdict(self)
@@ -123,7 +123,7 @@ class Description:
         return hashlib.sha256(self.text.encode()).hexdigest()
 
     def bases(self) -> tuple[type[CadModel], ...]:
-        """Return the base classes of the class to be created."""
+        """Return the base classes of the class that is created from this description."""
         return (ImportedModel,)
 
     def example(self) -> Mapping[str, Any]:
@@ -132,7 +132,7 @@ class Description:
 
     @property
     def trust(self) -> str:
-        """Return the limits of the checks on the solids, in plain words."""
+        """Return in plain words which checks the solids do not pass through."""
         if self.program == "step":
             return (
                 "lower: the shape is that of the solids in the STEP file, as read and written again. It is "
@@ -197,7 +197,8 @@ class ImportedModel(CadModel):
     def known_overlaps(self) -> Collection[frozenset[str]] | None:
         """Return the pairs of solids that overlapped at the import.
 
-        None if that was not examined, or if the shape is fixed, so that it cannot have others.
+        Return None if the import did not compare them, or if the shape is fixed, so that its overlaps cannot
+        change.
         """
         if self.imported.overlapping is None or not self.imported.parameters:
             return None
@@ -211,7 +212,7 @@ class ImportedModel(CadModel):
         return bounding_box(Body(one.name, one.solid, one.colour, one.places) for one in self.build())
 
     def dimensions(self, seen: Mapping[str, Any]) -> dict[str, Dimension]:
-        """Return each readable parameter as the measured size of its kind that is closest to it."""
+        """Return for each readable parameter the measured size of its kind that is nearest to its value."""
         sizes = sizes_of(seen.values())
         read: dict[str, Dimension] = {}
         for one in self.imported.parameters:
@@ -251,8 +252,8 @@ def imported_description(cls: type[CadModel]) -> Description | None:
 def sizes_of(seen: Iterable[Any]) -> dict[str, list[float]]:
     """Return the diameters of cylinders and the distances between parallel planes [mm] of some parts.
 
-    `diameter inside` are those of holes, `distance inside` those of planes that face each other; `outside`
-    are those with the material between.
+    `diameter inside` are diameters of holes, and `distance inside` are distances between planes that face
+    each other. `outside` marks sizes with the material between the surfaces.
     """
     sizes: dict[str, set[float]] = {kind: set() for kind in _KINDS}
     for part in seen:
@@ -284,7 +285,7 @@ def _distances(planes: Any) -> Iterator[tuple[float, Side]]:
 
 
 def _factor(one: Parameter) -> float:
-    """Return the ratio of a size on the solid [mm] to the number of the parameter."""
+    """Return the ratio of a size on the solid [mm] to the value of the parameter."""
     return (2 if one.role == "radius" else 1) * (25.4 if one.unit == "inch" else 1)
 
 
@@ -299,7 +300,8 @@ def role_of(
     """Return how to measure a parameter, from the solid's sizes before and after a change of it alone.
 
     A parameter is a size of a kind if the solid has the old value before the change, the new value after it,
-    and did not have the new value before. The side is empty if the solid has the new value on both.
+    and did not have the new value before. The side is empty if the solid has the new value both inside and
+    outside.
     """
     roles: tuple[tuple[Role, float], ...] = (("diameter", 1), ("radius", 2), ("distance", 1))
     for role, factor in roles:
@@ -327,7 +329,7 @@ class Trial:
     box: tuple[float, ...]  # [mm], both corners
 
     def moved(self, after: Trial) -> str:
-        """Return in words how another trial differs from this one; `NOTHING` if it does not."""
+        """Describe how another trial differs from this one; return `NOTHING` if it does not."""
         changes = [
             change
             for kind in ("diameter", "distance")
@@ -359,7 +361,7 @@ def _is_near(one: float, other: float) -> bool:
 
 
 def tried(drawn: ProgramResult) -> Trial:
-    """Return the measures of the shape from a program; this runs in a process with the kernel."""
+    """Return the measures of a shape that a program built; this runs in a process with the kernel."""
     from cad.inspect import bounding_box
     from cad.step import Body
     from cad.surfaces import look
@@ -371,7 +373,7 @@ def tried(drawn: ProgramResult) -> Trial:
 
 
 def parts_of(drawn: ProgramResult) -> Iterator[Part]:
-    """Yield the shape from a program as parts with unique names; raises as `parts_of_step` does."""
+    """Yield the shape that a program built as parts with unique names; raises as `parts_of_step` does."""
     if drawn.step:
         yield from parts_of_step(drawn.step)
         return
@@ -440,7 +442,7 @@ def _measured(name: str, solid: Any, colour: Colour, **more: Any) -> Part:
 
 
 def _require_stated_volume(model: CadModel, parts: Iterable[Part], stated: float | None) -> None:
-    """Check the volume of all parts against the volume that the program states, if there is one.
+    """Check the volume of all parts against the volume that the program states, if it states one.
 
     Raises
     ------
@@ -454,12 +456,15 @@ def _require_stated_volume(model: CadModel, parts: Iterable[Part], stated: float
 
 
 def _plain(value: float) -> float:
-    """Return a whole number as an integer, so that a form shows `50 mm`, not `50.0 mm`."""
+    """Convert a whole number to an integer, so that a form shows `50 mm`, not `50.0 mm`."""
     return int(value) if float(value).is_integer() else value
 
 
 def attribute_of(name: str) -> str:
-    """Return the attribute name of a parameter; the language reserves many plain words, such as `build`."""
+    """Return the attribute name of a parameter.
+
+    It differs from the plain name because the language reserves many words, such as `build`.
+    """
     return f"of_{name}"
 
 
@@ -470,9 +475,9 @@ class PartNames:
         self._taken, self._numbers = set[str](), dict[str, int]()
 
     def unique(self, name: str) -> str:
-        """Return a name as close as possible to the given one.
+        """Return the given name, or the nearest free one.
 
-        A number is added if another part has that name.
+        If another part already has the name, a number is added.
         """
         signs = (sign if sign.isprintable() and sign not in "'\"\\" else " " for sign in name[:LONGEST_NAME])
         plain = unique = " ".join("".join(signs).split()) or "part"

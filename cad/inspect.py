@@ -78,7 +78,7 @@ def summarise(
 ) -> dict[str, float]:
     """Return the measures of all bodies together, in the units of `MEASURES`.
 
-    Densities [kg/m³] are by body name.
+    Densities [kg/m³] are given by body name.
     """
     standing = [
         _stand(one, place, densities[body.name] * 1e-9)
@@ -132,7 +132,7 @@ def _rounded(corner: tuple[float, float, float]) -> tuple[float, float, float]:
 def _stand(one: BodyMeasures, place: Location, density: float) -> tuple[float, Array, Array]:
     """Return mass [kg], centre [mm] and inertia about the centre [kg·mm²] of a body at a position.
 
-    Density in kg/mm³.
+    The density is in kg/mm³.
     """
     turn, shift = rigid(place)
     return density * one.volume, turn @ one.centre + shift, density * turn @ one.inertia @ turn.T

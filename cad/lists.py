@@ -6,6 +6,9 @@ import re
 from collections.abc import Iterable
 from typing import Any
 
+from templates.core.errors import FaultyText
+from templates.core.units.tolerance import STATE_IN_TABLE, split
+
 LONGEST_TEXT = 2000
 """Longest text that is read as a list; this limits the reading time, which is linear in the length."""
 
@@ -25,11 +28,24 @@ def rounded(values: Iterable[float]) -> list[float]:
 
 
 def listed(raw: Any) -> Any:
-    """Return a text that contains a list as a quantity; return anything else unchanged."""
+    """Convert a text that contains a list to a quantity; return anything else unchanged."""
     if not isinstance(raw, str) or len(raw) > LONGEST_TEXT or not (match := _LIST.fullmatch(raw)):
         return raw
     try:
         numbers = [float(item) for item in match[1].split(",")]
     except ValueError:
         return raw  # the caller reports what is wrong with it
-    return {"value": numbers, "unit": match[2].strip() or "1"}
+    return {"value": numbers, **_unit_of(match[2].strip())}
+
+
+def _unit_of(rest: str) -> dict[str, Any]:
+    """Return the unit after a list, and the tolerance that its items share."""
+    try:
+        written = split(rest)
+    except FaultyText:
+        written = None
+    if written is None or written.zone is not None:
+        return {"unit": rest or "1"}
+    upper, lower = (f"{end:+.12g} {written.scale}" for end in (written.upper, written.lower))
+    more = {STATE_IN_TABLE: True} if written.state_in_table else {}
+    return {"unit": written.unit, "upper": upper, "lower": lower, **more}

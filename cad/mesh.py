@@ -61,7 +61,7 @@ def mesh(body: Body, deflection: float | None = None) -> Mesh:
 
 
 def closed_mesh(body: Body, deflection: float | None = None) -> Mesh:
-    """Triangulate one body without a gap; the mesh is finer than requested if that is necessary.
+    """Triangulate one body without gaps, with a finer mesh than requested if necessary.
 
     Raises
     ------
@@ -96,7 +96,7 @@ def is_closed(one: Mesh) -> bool:
 
 
 def welded(one: Mesh) -> tuple[NDArray[np.float32], Integers]:
-    """Return points (p, 3) [mm] and corners of triangles (m, 3); points equal in single precision are one."""
+    """Return points (p, 3) [mm] and triangle corners (m, 3); points equal in single precision are merged."""
     single = np.ascontiguousarray(one.points.astype(np.float32) + np.float32(0.0))  # without negative zeros
     _, first, numbers = np.unique(single.view("V12").ravel(), return_index=True, return_inverse=True)
     return single[first], numbers[one.triangles].astype(np.int64)
@@ -124,7 +124,7 @@ def _joined(body: Body, pieces: Sequence[tuple[Array, Array, Integers]]) -> Mesh
 
 
 def placed(meshes: Iterable[Mesh]) -> Iterator[tuple[Mesh, Array, Array]]:
-    """Yield each mesh at each of its positions: the mesh, with its points and normals there."""
+    """Yield each mesh at each of its positions, with its points and normals there."""
     for one in meshes:
         for place in one.places:
             turn, shift = rigid(place)

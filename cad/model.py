@@ -57,7 +57,7 @@ BRONZE: Colour = (0.80, 0.62, 0.36)
 def material_named(name: str, density: float) -> str:
     """Return the text for a material: its name and density [kg/m³].
 
-    A material without a name that has the density of steel is steel.
+    An unnamed material that has the density of steel is called steel.
     """
     name = name or ("steel" if isclose(density, STEEL_DENSITY, rel_tol=1e-6) else "")
     return f"{name} ({density:.6g} kg/m³)" if name else f"{density:.6g} kg/m³"
@@ -66,8 +66,8 @@ def material_named(name: str, density: float) -> str:
 def names_at(name: str, places: int, called: tuple[str, ...] = ()) -> tuple[str, ...]:
     """Return the name of a part at each of its positions.
 
-    These are the names of the positions, if they have their own (`called`); otherwise the name of the part,
-    with a number if there are several positions.
+    If the positions have names of their own (`called`), these are returned; otherwise the name of the part,
+    numbered if there are several positions.
     """
     if called:
         return called
@@ -98,7 +98,7 @@ class Part:
 
     @property
     def solid(self) -> Shape:
-        """Return the single solid of the shape, which some kernel operations wrap in a compound.
+        """Return the single solid of the shape; some kernel operations wrap it in a compound.
 
         Raises
         ------
@@ -165,7 +165,7 @@ class CadModel(TolerancedTemplate):
     def component_of(self, part: str) -> str | None:
         """Return the fixed part of an assembly to which a solid belongs.
 
-        None for the solids of the model itself.
+        Return None for the solids of the model itself.
         """
         return None
 
@@ -175,12 +175,16 @@ class CadModel(TolerancedTemplate):
         return {}
 
     def known_overlaps(self) -> Collection[frozenset[str]] | None:
-        """Return the pairs of its own solids that may overlap; None if all may."""
+        """Return the pairs of the model's own solids that may overlap; None if all may."""
         return () if self.keeps_apart else None
 
     def may_overlap(self, one: str, other: str) -> bool:
         """Return whether two solids may overlap; at least one of them belongs to a fixed part."""
         return False
+
+    def movers(self, part: str) -> tuple[str, ...]:
+        """Return the parameters by which a user moves a solid out of the way of another; none by default."""
+        return ()
 
     def shaft(self) -> Shaft | None:
         """Return the positions at which an analysis holds and loads the solid; None if it is not a shaft."""
@@ -196,9 +200,9 @@ class CadModel(TolerancedTemplate):
         return None
 
     def dimensions(self, seen: Mapping[str, PartSurfaces]) -> Mapping[str, Dimension]:
-        """Return the parameters by API name [mm.
+        """Return, by API name, the parameters that can be read from the parts of the file [mm].
 
-        A count as 1] that can be read from the parts of the file.
+        A count has the unit 1.
         """
         raise NotImplementedError
 
@@ -225,7 +229,7 @@ class CadModel(TolerancedTemplate):
 
 
 def _no_list(name: str, text: str, unit: str) -> Fault:
-    """Return the fault of a text that begins as a list but is not one, with an example of a list."""
+    """Return the fault of a text that begins like a list but is not one, with an example of a list."""
     form = "[1.5, 2]" if unit == "1" else f"[1.5, 2] {unit}"
     if len(text) > LONGEST_TEXT:
         detail = (

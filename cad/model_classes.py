@@ -20,7 +20,7 @@ from templates.core.paper.mathml import named_symbol
 
 
 def description_of(text: str) -> Description:
-    """Return the description parsed from the text of `Description.text`."""
+    """Parse the text of a description, as `Description.text` returns it."""
     read = json.loads(text)
     read["parameters"] = tuple(Parameter(**one) for one in read["parameters"])
     if "ends" in read:
@@ -34,7 +34,10 @@ def description_of(text: str) -> Description:
 
 
 def _words(one: Parameter) -> str:
-    """Return the words of a parameter, with what a trial at the import showed of a number without a unit."""
+    """Return the words of a parameter.
+
+    For a number without a unit they state what moved in a trial at the import.
+    """
     if one.moves == NOTHING:
         return f"{one.words} (moves nothing)"
     return f"{one.words} ({one.role} in mm)" if one.role and one.unit == "1" else one.words

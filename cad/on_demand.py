@@ -97,7 +97,7 @@ def _forget(kind: type[ModuleType]) -> None:
 
 
 def _may_hold(name: str) -> bool:
-    """Return whether a module may contain placeholders; modules of Python, for example, cannot.
+    """Return whether a module may contain placeholders; modules of Python itself, for example, cannot.
 
     Looking through a namespace changes the reference counts of all its objects. A forked process would then
     copy the memory of everything that its server has imported.
@@ -217,7 +217,7 @@ class _DisplayModule(ModuleType):
 
 
 def _imported(place: str, name: str) -> object:
-    """Return the object of `from place import name`, which is an attribute or a module."""
+    """Return the object that `from place import name` would import: an attribute or a module."""
     module = import_module(place)
     return getattr(module, name) if hasattr(module, name) else import_module(f"{place}.{name}")
 

@@ -65,13 +65,13 @@ def overlaps(bodies: Sequence[Body]) -> Iterator[Overlap]:
 def _shared_volume(one: str, shape: Shape, other: str, beside: Shape) -> float:
     common, properties = BRepAlgoAPI_Common(shape.wrapped, beside.wrapped), GProp_GProps()
     if not common.IsDone():
-        raise GeometryError("kernel", f"whether {one} and {other} overlap cannot be determined")
+        raise GeometryError("kernel", f"the kernel cannot determine whether {one} and {other} overlap")
     BRepGProp.VolumeProperties_s(common.Shape(), properties)
     return float(properties.Mass())
 
 
 def count_meeting(bodies: Sequence[Body]) -> int:
-    """Return the number of pairs of bodies whose boxes meet, which `overlaps` compares."""
+    """Return the number of pairs of bodies whose boxes meet; these are the pairs that `overlaps` compares."""
     return sum(1 for _ in _meeting(bodies))
 
 
@@ -145,12 +145,12 @@ def clearances(bodies: Sequence[Body], group: Group, report: Report | None = Non
 
 
 def require_few_meeting(bodies: Sequence[Body], group: Group) -> None:
-    """Refuse an assembly in which too many pairs of boxes meet, before any slow operation.
+    """Refuse an assembly in which the boxes of too many pairs meet, before any slow operation.
 
     Raises
     ------
     GeometryError
-        `too_large`, with the number of pairs, the limit, and the fixed parts that have the most of them.
+        `too_large`, with the number of pairs, the limit, and the fixed parts with the most of them.
     """
     if any(group(body.name) for body in bodies):
         standing = _standing(bodies, group)
@@ -194,7 +194,7 @@ def _pairs(standing: Sequence[_PlacedSolid]) -> list[_Pair]:
 
 
 def _require_few(standing: Sequence[_PlacedSolid], pairs: Sequence[_Pair]) -> None:
-    """Raise an error if more pairs of boxes meet than can be compared; see `clearances`."""
+    """Raise an error if the boxes of more pairs meet than can be compared; see `clearances`."""
     meeting = [pair for pair in pairs if pair.between <= _TOUCHING]
     if len(meeting) <= MOST_MEETING:
         return

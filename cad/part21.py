@@ -20,9 +20,9 @@ _NOT_PLAIN = re.compile(r"[^ -~\U00010000-\U0010ffff]+|[\U00010000-\U0010ffff]+"
 def quoted(text: str) -> str:
     r"""Return a text as a string of Part 21: quotes and backslashes doubled, non-ASCII as `\X2\…\X0\`.
 
-    Characters outside the basic multilingual plane, such as emoji, become `\X4\…\X0\`. Open CASCADE reads a
-    quote before a comma or bracket as the end of the string, even a doubled quote, so its character code is
-    written instead.
+    Characters outside the basic multilingual plane, such as emoji, become `\X4\…\X0\`. Open CASCADE takes a
+    quote before a comma or bracket for the end of the string, even if it is doubled, so such a quote is
+    written as its character code.
     """
     escaped = _QUOTE.join(_ENDING.split(text.replace("\\", "\\\\")))
     return "'" + _NOT_PLAIN.sub(_escaped, escaped.replace("'", "''")) + "'"
@@ -34,16 +34,16 @@ def _escaped(signs: re.Match[str]) -> str:
 
 
 def in_ascii(text: str) -> str:
-    r"""Return a text from Open CASCADE, which contains bytes of UTF-8, with non-ASCII as `\X2\…\X0\`."""
+    r"""Return a text from Open CASCADE, whose bytes are UTF-8, with non-ASCII characters as `\X2\…\X0\`."""
     return _BEYOND_ASCII.sub(
         lambda run: _NOT_PLAIN.sub(_escaped, run[0].encode("latin-1").decode("utf-8", "replace")), text
     )
 
 
 def plain(string: str) -> str:
-    """Return the text of a string of Part 21, given with its quotes.
+    """Return the content of a Part 21 string, given with its quotes.
 
-    Line breaks in it do not belong to the text.
+    Line breaks within the string are not part of its content.
     """
     return _ESCAPED.sub(_unescaped, string[1:-1].replace("\n", "").replace("\r", ""))
 
@@ -58,9 +58,7 @@ def _unescaped(escape: re.Match[str]) -> str:
 def description(text: str) -> list[str]:
     """Return the strings of the first list of FILE_DESCRIPTION, each with its quotes.
 
-    None if there is no such list.
-
-    The search stops at the end of the header section.
+    Return None if there is no such list. The search stops at the end of the header section.
     """
     scan = tokens(text)
     for token in scan:
@@ -74,7 +72,7 @@ def description(text: str) -> list[str]:
 def _strings(scan: Iterator[str]) -> list[str]:
     """Return the strings up to the closing bracket.
 
-    None if anything but strings and commas precedes the bracket.
+    Return None if anything other than strings and commas precedes the bracket.
     """
     strings: list[str] = []
     for token in scan:
@@ -88,9 +86,9 @@ def _strings(scan: Iterator[str]) -> list[str]:
 
 
 def tokens(text: str) -> Iterator[str]:
-    """Yield the words, single characters, and strings with their quotes; skip blanks and comments.
+    """Yield words, single characters, and strings with their quotes; skip blanks and comments.
 
-    A string or comment that does not end extends to the end of the text.
+    A string or comment without an end extends to the end of the text.
     """
     place = 0
     while place < len(text):
@@ -110,7 +108,7 @@ def _end(text: str, start: int) -> int:
 
 
 def end_of_string(text: str, start: int) -> int:
-    """Return the position after the quote that closes a string; two quotes are one quote of the text."""
+    """Return the position after the quote that closes a string; a doubled quote is part of the string."""
     place = _behind(text, "'", start + 1)
     while text.startswith("'", place):
         place = _behind(text, "'", place + 1)
@@ -118,6 +116,6 @@ def end_of_string(text: str, start: int) -> int:
 
 
 def _behind(text: str, mark: str, start: int) -> int:
-    """Return the position after the next `mark`; the end of the text if there is none."""
+    """Return the position after the next `mark`, or the end of the text if there is none."""
     place = text.find(mark, start)
     return len(text) if place < 0 else place + len(mark)

@@ -86,9 +86,9 @@ def _fitted(corners: Array, width: int, height: int) -> Array:
 
 
 def _draw(scene: Scene, width: int, height: int) -> tuple[Array, Integers]:
-    """Return the light (height, width, 3) and the visible face (height, width.
+    """Return the light (height, width, 3) and the number of the visible face (height, width) at every sample.
 
-    -1 for none) at every sample.
+    The face number is -1 where no face is visible.
     """
     triangle, column, row = _fragments(scene.corners)
     weights = _barycentric(scene.corners[triangle], column + 0.5, row + 0.5)
@@ -110,9 +110,9 @@ def _draw(scene: Scene, width: int, height: int) -> tuple[Array, Integers]:
 
 
 def _fragments(corners: Array) -> tuple[Integers, Integers, Integers]:
-    """Return the samples that triangles cover: triangle, column and row.
+    """Return the samples that triangles cover, as triangle, column and row.
 
-    A sample is covered if its centre is.
+    A triangle covers a sample if it contains the sample's centre.
     """
     x, y = corners[:, :, 0], corners[:, :, 1]
     triangle, row = _expand(y.min(axis=1), y.max(axis=1))
@@ -130,7 +130,7 @@ def _fragments(corners: Array) -> tuple[Integers, Integers, Integers]:
 
 
 def _expand(low: Array, high: Array) -> tuple[Integers, Integers]:
-    """Return, for intervals, the interval number and each whole number n with low ≤ n + 1/2 ≤ high."""
+    """Return each interval number with every whole number n for which low ≤ n + 1/2 ≤ high."""
     first = np.ceil(np.where(np.isfinite(low), low, 0) - 0.5).astype(np.int64)
     last = np.floor(np.where(np.isfinite(high), high, -1) - 0.5).astype(np.int64)
     counts = np.maximum(last - first + 1, 0)
@@ -140,7 +140,7 @@ def _expand(low: Array, high: Array) -> tuple[Integers, Integers]:
 
 
 def _barycentric(corners: Array, x: Any, y: Any) -> Array:
-    """Return the weights (n, 3) of the corners of each triangle at its point."""
+    """Return the weights (n, 3) of the corners of each triangle at its sample point."""
     a, b, c = (corners[:, i, :2] for i in range(3))
     (ux, uy), (vx, vy) = (b - a).T, (c - a).T
     px, py = x - a[:, 0], y - a[:, 1]
@@ -163,7 +163,7 @@ def _lit(normals: Array, colours: Array) -> Array:
 
 
 def _borders(faces: Integers) -> Mask:
-    """Return the samples at which another face begins."""
+    """Return the samples at which a different face begins."""
     differs = np.zeros(faces.shape, dtype=bool)
     differs[:, :-1] |= faces[:, :-1] != faces[:, 1:]
     differs[:-1, :] |= faces[:-1, :] != faces[1:, :]

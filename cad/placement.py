@@ -53,7 +53,7 @@ class Place:
 
 
 def frame_of(name: str, datum: str, parts: Mapping[str, Part]) -> Location:
-    """Return the frame of a datum for the component of this name, among the parts that are already placed.
+    """Return the frame of the datum of a component, among the parts that are already placed.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def box_of(solids: Sequence[object]) -> Box:
 
 
 def _axes_of(part: Part, middle: Vector) -> list[tuple[Vector, Vector]]:
-    """Return each axis once: its point nearest to the middle of the part's box, and its direction."""
+    """Return each distinct axis: its point nearest to the middle of the part's box, and its direction."""
     axes = dict[tuple[float, ...], tuple[Vector, Vector]]()
     for cylinder in look(part.solid.moved(part.places[0])).cylinders:
         along = _forward(cylinder.direction)

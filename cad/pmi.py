@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from cadquery import Shape
+from cadquery import Compound, Location, Shape
 from OCP.TCollection import TCollection_HAsciiString
 from OCP.TDF import TDF_Label, TDF_LabelSequence
 from OCP.TDocStd import TDocStd_Document
@@ -27,7 +27,7 @@ from OCP.XCAFDoc import XCAFDoc_Datum, XCAFDoc_Dimension, XCAFDoc_DocumentTool, 
 from cad.errors import GeometryError
 from cad.pmi_presentation import Sheet
 from cad.surfaces import Face, Kind, Place, Size
-from cad.tolerances import Form, FormTolerances, Limits, deviations, number_of
+from cad.tolerances import REMEDY, Form, FormTolerances, Limits, deviations, number_of
 
 _TYPES: Mapping[Kind, str] = {
     "diameter": "XCAFDimTolObjects_DimensionType_Size_Diameter",
@@ -35,6 +35,8 @@ _TYPES: Mapping[Kind, str] = {
     "radius": "XCAFDimTolObjects_DimensionType_Size_Radius",
     "distance": "XCAFDimTolObjects_DimensionType_Location_LinearDistance",
     "chamfer": "XCAFDimTolObjects_DimensionType_Size_Thickness",
+    "circle": "XCAFDimTolObjects_DimensionType_Location_LinearDistance",
+    "edge": "XCAFDimTolObjects_DimensionType_Location_LinearDistance",
 }
 SIGNS: Mapping[Kind, str] = {"diameter": "Ø", "sphere": "SØ", "radius": "R"}
 FORM_SIGNS: Mapping[Form, str] = {"cylindricity": "⌭", "perpendicularity": "⊥", "parallelism": "∥"}
@@ -50,12 +52,23 @@ _ASCII = str.maketrans(
 )
 
 
+def on_faces(dimensions: Mapping[str, object]) -> dict[str, Size]:
+    """Return the dimensions whose tolerances a file states on faces, by parameter."""
+    return {n: size for n, size in dimensions.items() if isinstance(size, Size) and size.kind in _TYPES}
+
+
 @dataclass(frozen=True)
 class Product:
-    """A part in a document: its label, and the solid that is written."""
+    """A part in a document: its label, the solid that is written, and the first position of the part."""
 
     label: TDF_Label
     solid: Shape
+    place: Location = field(default_factory=Location)
+
+    @property
+    def placed(self) -> Shape:
+        """Return the solid at the first position of the part."""
+        return self.solid.moved(self.place)
 
 
 @dataclass(frozen=True)
@@ -75,32 +88,54 @@ class Annotations:
         Raises
         ------
         GeometryError
-            `tolerance`, if a dimension with limits has no faces.
+            `tolerance`, if a dimension with limits has no faces and no table is to state them.
         """
-        sizes = {
-            name: size for name, size in dimensions.items() if isinstance(size, Size) and size.kind in _TYPES
-        }
+        sizes = on_faces(dimensions)
         for name, within in limits.items():
-            if name not in sizes:
+            if name not in sizes and not within.state_in_table:
                 detail = f"{name} has a tolerance, but no face shows its {within.nominal:g} mm"
                 other = "draw a solid with this feature" if within.nominal else "give it a size above 0"
-                raise GeometryError("tolerance", f"{detail}; omit the tolerance, or {other}", (name,))
-        return Annotations(declared, limits, sizes)
+                raise GeometryError("tolerance", f"{detail}; {other}, or {REMEDY}", (name,))
+        carried = {name: within for name, within in limits.items() if name in sizes}
+        return Annotations(declared, carried, sizes)
 
     @property
-    def dimensions(self) -> list[str]:
-        """Return the parameter of every written dimension, in the order of the file."""
-        return [n for n in self.limits for _ in self.sizes[n].places]
+    def dimensions(self) -> list[StatedDimension]:
+        """Return every written dimension, in the order of the file."""
+        return [
+            stated_dimension(name, within, self.sizes[name].kind)
+            for name, within in self.limits.items()
+            for _ in self.sizes[name].places
+        ]
 
     @property
     def forms(self) -> list[tuple[str, Form]]:
-        """Return the parameter and the kind of every geometric tolerance, in the order of the file."""
+        """Return the parameter and the form of every geometric tolerance, in the order of the file."""
         return [(n, form) for n in self.limits for form in self.declared[n].forms]
 
     @property
     def names(self) -> list[str]:
-        """Return the parameters of all dimensions, followed by those of all geometric tolerances."""
-        return [*self.dimensions, *(name for name, _ in self.forms)]
+        """Return the names of all dimensions, followed by those of all geometric tolerances."""
+        return [*(one.name for one in self.dimensions), *(name for name, _ in self.forms)]
+
+
+@dataclass(frozen=True)
+class StatedDimension:
+    """A dimension as a file states it: its name, and its limits."""
+
+    name: str
+    limits: Limits
+
+
+def stated_dimension(parameter: str, limits: Limits, kind: Kind) -> StatedDimension:
+    """Return a dimension as a file states it: a pitch circle by its radius, from the axis to a hole.
+
+    The kernel writes no diameter of a circle through axes.
+    """
+    if kind != "circle":
+        return StatedDimension(parameter, limits)
+    half = Limits(limits.nominal / 2, limits.lower / 2, limits.upper / 2)
+    return StatedDimension(f"{parameter}/2", half)
 
 
 def annotate(document: TDocStd_Document, products: Mapping[str, Product], annotations: Annotations) -> None:
@@ -119,14 +154,16 @@ class _Writer:
         self._products, self._annotations = products, annotations
         self._faces: dict[Face, TDF_Label] = {}
         self._letters: dict[str, TDF_Label] = {}
-        self._sheets: dict[str, Sheet] = {}
+        self._placed = {name: product.placed for name, product in products.items()}
+        self._sheet = Sheet(Compound.makeCompound(self._placed.values()))
 
     def write(self) -> None:
         """Write all dimensions, then all geometric tolerances."""
         limits, sizes = self._annotations.limits, self._annotations.sizes
         for name, within in limits.items():
+            stated = stated_dimension(name, within, sizes[name].kind).limits
             for place in sizes[name].places:
-                self._dimension(sizes[name].kind, place, within)
+                self._dimension(sizes[name].kind, place, stated)
         for name, within in limits.items():
             one = self._annotations.declared[name]
             for form, share in one.forms.items():
@@ -144,7 +181,8 @@ class _Writer:
         size.SetPresentation(self._drawn(text, [*place.first[:1], *place.second[:1]]), _name(text))
         label = self._tool.AddDimension()
         XCAFDoc_Dimension.Set_s(label).SetObject(size)
-        self._tool.SetDimension(self._labels(place.first), self._labels(place.second), label)
+        second = self._edges(place) if kind == "edge" else self._labels(place.second)
+        self._tool.SetDimension(self._labels(place.first), second, label)
 
     def _form(self, form: Form, width: float, faces: Sequence[Face], to: str) -> None:
         tolerance = ToleranceObject()
@@ -160,7 +198,7 @@ class _Writer:
             self._tool.SetDatumToGeomTol(self._datum(to), label)
 
     def _datum(self, letter: str) -> TDF_Label:
-        """Return the datum of a letter; write it at the first call."""
+        """Return the datum with a letter; write it at the first call."""
         if letter not in self._letters:
             declared = self._annotations.declared
             name = next(name for name, one in declared.items() if one.datum == letter)
@@ -177,12 +215,19 @@ class _Writer:
         return self._letters[letter]
 
     def _drawn(self, text: str, faces: Sequence[Face]) -> TopoDS_Compound:
-        """Return the lines of a text beside its part, and leaders to the middles of faces."""
-        part = faces[0][0]
-        if part not in self._sheets:
-            self._sheets[part] = Sheet(self._products[part].solid)
-        middles = [self._products[name].solid.Faces()[number].Center() for name, number in faces]
-        return self._sheets[part].drawn(text, middles)
+        """Return the lines of a text beside all parts, and leaders to faces of parts at their positions."""
+        return self._sheet.drawn(text, [self._placed[name].Faces()[number] for name, number in faces])
+
+    def _edges(self, place: Place) -> TDF_LabelSequence:
+        """Return the labels of the edges in which the faces of a place meet."""
+        labels = TDF_LabelSequence()
+        for part in dict.fromkeys(part for part, _ in place.first):
+            product = self._products[part]
+            first, second = (_edges_of(product.solid, part, faces) for faces in (place.first, place.second))
+            for edge in first:
+                if any(edge.isSame(other) for other in second):
+                    labels.Append(self._shapes.AddSubShape(product.label, edge.wrapped))
+        return labels
 
     def _labels(self, faces: Iterable[Face]) -> TDF_LabelSequence:
         """Return the labels of faces; create each label once."""
@@ -196,6 +241,12 @@ class _Writer:
         return labels
 
 
+def _edges_of(solid: Shape, part: str, faces: Iterable[Face]) -> list[Shape]:
+    """Return the edges of those faces that are of a part."""
+    every = solid.Faces()
+    return [edge for name, number in faces if name == part for edge in every[number].Edges()]
+
+
 def _name(text: str) -> TCollection_HAsciiString:
-    """Return the text as the name of its lines, in the letters of a STEP file."""
+    """Return a text as a name for its lines, limited to the characters of a STEP file."""
     return TCollection_HAsciiString(text.translate(_ASCII))

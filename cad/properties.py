@@ -91,7 +91,7 @@ def entities(
 ) -> Iterator[str]:
     """Yield the entities, numbered from `first`, that state properties of the products in a data section.
 
-    The product called `title`, or the only product, gets the attributes.
+    The attributes belong to the product called `title`, or to the only product.
     """
     products = _products(data)
     numbers = iter(range(first, first + 10**6))
@@ -162,7 +162,7 @@ class _Units:
     density: int
 
     def entities(self) -> Iterator[str]:
-        """Yield the entities of the units and their elements."""
+        """Yield the entities of the units and of their elements."""
         yield f"#{self.millimetre} = (LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.));"
         yield f"#{self.metre} = (LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT($,.METRE.));"
         yield f"#{self.kilogram} = (MASS_UNIT()NAMED_UNIT(*)SI_UNIT(.KILO.,.GRAM.));"
@@ -176,7 +176,7 @@ class _Units:
 
 
 def _attributes(numbers: Iterator[int], root: _Product, attributes: Mapping[str, str]) -> Iterator[str]:
-    """Yield the entities of a set of attributes, each a name and a text."""
+    """Yield the entities of a set of attributes, each with a name and a text."""
     if not attributes:
         return
     general, link, items = next(numbers), next(numbers), []
@@ -225,7 +225,7 @@ def _stated(
 
 
 def _real(value: float) -> str:
-    """Return a number as Part 21 writes it, always with a decimal point: `1.5E-05`."""
+    """Return a number in the form of Part 21, always with a decimal point: `1.5E-05`."""
     text = f"{value:.15g}".upper()
     mantissa, exponent, power = text.partition("E")
     return f"{mantissa}{'' if '.' in mantissa else '.'}{exponent}{power}"

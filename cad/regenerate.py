@@ -11,7 +11,7 @@ import hashlib
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -40,21 +40,23 @@ from cad.statements import read_statements
 from cad.step import Body, read_step, write_step
 from cad.step_text import KERNEL
 from cad.surfaces import look
-from cad.tolerances import Limits, carried, in_unit, limits, limits_of
+from cad.tolerance_places import TolerancePlace, tolerance_places
+from cad.tolerances import Limits, carried, in_unit, limits, limits_of, table_tolerances
 from cad.tolerances import written as with_limits
 from templates.core.catalogue.digests import digest
 from templates.core.catalogue.modules import is_outside
 from templates.core.errors import InvalidInputs
+from templates.core.units.tolerance import STATE_IN_TABLE
 
 __all__ = [
-    "Build", "as_quantities", "as_text", "build_key", "made_by", "regenerate", "regenerate_class",
+    "Build", "as_quantities", "as_text", "as_typed", "build_key", "made_by", "regenerate", "regenerate_class",
     "regenerate_from_text", "regenerate_shape",
 ]  # fmt: skip
 
 Value = float | str | list[float]
 """Value of a parameter: a number, a word, or a list; limit deviations and their zone have their own keys."""
 
-RECIPE = 4
+RECIPE = 6
 """Version of this package's output; increase it whenever equal parameters give other bytes or measures."""
 
 MADE_BY = f"{KERNEL}, recipe {RECIPE}"
@@ -62,7 +64,7 @@ MADE_BY = f"{KERNEL}, recipe {RECIPE}"
 
 
 def made_by(cls: type[CadModel]) -> str:
-    """Return a readable form of the part of a build's key that does not depend on model and parameters.
+    """Return, in readable form, what a build's key covers besides model and parameters.
 
     For a team's model it includes the digest of the code.
     """
@@ -82,6 +84,7 @@ class Build:
     dimensions: dict[str, Dimension]  # read back from the file, in the declared unit of each parameter
     materials: dict[str, str]  # material of each part
     clearances: tuple[Clearance, ...] = ()  # between the fixed parts of an assembly and the other parts
+    tolerances: Mapping[str, TolerancePlace] = field(default_factory=dict)  # where the files state them
 
 
 def ignore(done: float, what: str) -> None:
@@ -91,8 +94,8 @@ def ignore(done: float, what: str) -> None:
 def as_text(model: CadModel) -> dict[str, str]:
     """Return each parameter, including defaults, as in the STEP file: `{"inner_diameter": "50 mm", …}`.
 
-    Values have twelve digits; parameters that differ less are the same model and give the same bytes. The
-    text includes a tolerance if the model has faces for it: `48 mm H7`.
+    Values have twelve digits; parameters that differ by less describe the same model and give the same bytes.
+    The text includes a tolerance if the model has faces for it: `48 mm H7`.
     """
     return dict(_canonical(model).texts)
 
@@ -103,6 +106,14 @@ def as_quantities(model: CadModel) -> dict[str, dict[str, Value]]:
     A toleranced parameter also has `upper` and `lower`, its limit deviations in that unit, and its `zone`.
     """
     return {name: dict(quantity) for name, quantity in _canonical(model).quantities.items()}
+
+
+def as_typed(model: CadModel) -> dict[str, dict[str, Value]]:
+    """Return every parameter as `as_quantities` does, also with tolerances that no file states."""
+    quantities = as_quantities(model)
+    for name, tolerance in table_tolerances(model, marked=False).items():
+        quantities[name] |= _stated(tolerance.lower, tolerance.upper, tolerance.zone, in_table=False)
+    return quantities
 
 
 def build_key(model: CadModel) -> str:
@@ -138,6 +149,9 @@ def _canonical(model: CadModel) -> _Canonical:
         for name, within in limits(model).items():
             texts[name], more = _within(within, texts[name], model.inputs[name].meaning.unit)
             quantities[name] |= more
+        for name, tolerance in table_tolerances(model).items():
+            texts[name] = tolerance.written(texts[name], model.inputs[name].meaning.unit)
+            quantities[name] |= _stated(tolerance.lower, tolerance.upper, tolerance.zone, in_table=True)
         kept = vars(model)[_KEPT] = _Canonical(texts, quantities, _key(type(model), texts))
     return kept
 
@@ -181,7 +195,7 @@ def regenerate_from_text(
 
 
 def regenerate_class(cls: type[CadModel], texts: Mapping[str, str], *, report: Report = ignore) -> Build:
-    """Build a model of a class from its parameters as `as_text` writes them; raises as `regenerate` does."""
+    """Build a model of a given class from texts that `as_text` wrote; raises as `regenerate` does."""
     return regenerate_shape(cls.from_quantities(texts), texts, report=report)
 
 
@@ -213,19 +227,26 @@ def regenerate_shape(model: CadModel, texts: Mapping[str, str], *, report: Repor
     with _kernel(model):
         between = compared(model, bodies, lambda done, what: report(0.8 + 0.2 * done, what))
     check_clearances(model, between)
-    dimensions = check_dimensions(model, look_at(bodies))
+    seen = look_at(bodies)
+    dimensions = check_dimensions(model, seen)
+    places: dict[str, TolerancePlace] = {}
     if annotations is not None:
         check_statements(parts, bodies, annotations, read_statements(step))
+        places = tolerance_places(model, model.dimensions(seen))
     densities = {part.name: part.density for part in parts}
     measures = summarise(bodies, measured, densities, box) | between_parts(model, between)
     report(1.0, "done")
     materials = {part.name: part.made_of for part in parts}
-    return Build(key, cls.id, cls.version, _plain(model), step, measures, dimensions, materials, between)
+    plain = _plain(model)
+    return Build(
+        key, cls.id, cls.version, plain, step, measures, dimensions, materials, between, places
+    )  # fmt: skip
 
 
 def _annotations(model: CadModel, parts: Sequence[Part]) -> Annotations | None:
-    """Return the annotations of the file; None if no dimension has a tolerance."""
-    if not (within := limits(model)):
+    """Return the annotations of the file; None if no parameter has a tolerance."""
+    within = limits(model)
+    if not (within or table_tolerances(model)):
         return None
     seen = {part.name: look(part.solid, len(part.places), part.name) for part in parts}
     return Annotations.of(carried(type(model)), within, model.dimensions(seen))
@@ -237,7 +258,7 @@ def _plain(model: CadModel) -> dict[str, Value]:
 
 
 def _written(model: CadModel, name: str, si: Any) -> tuple[str, dict[str, Value]]:
-    """Return a parameter as text and as a quantity, rounded to twelve digits."""
+    """Return a parameter both as text and as a quantity, rounded to twelve digits."""
     if isinstance(si, str):
         return si, {"value": si}
     meaning = model.inputs[name].meaning
@@ -250,10 +271,14 @@ def _written(model: CadModel, name: str, si: Any) -> tuple[str, dict[str, Value]
 
 
 def _within(within: Limits, text: str, unit: str) -> tuple[str, dict[str, Value]]:
-    """Return the text of a parameter with its limits, and the additional fields of its quantity."""
-    lower, upper = in_unit(within, unit)
-    zone: dict[str, Value] = {} if within.zone is None else {"zone": within.zone}
-    return with_limits(text, unit, within), {"upper": upper, "lower": lower, **zone}
+    """Return the text of a parameter with its limits, and the extra fields for its quantity."""
+    stated = _stated(*in_unit(within, unit), within.zone, in_table=within.state_in_table)
+    return with_limits(text, unit, within), stated
+
+
+def _stated(lower: float, upper: float, zone: str | None, *, in_table: bool) -> dict[str, Value]:
+    more: dict[str, Value] = {} if zone is None else {"zone": zone}
+    return {"upper": upper, "lower": lower, **more, **({STATE_IN_TABLE: True} if in_table else {})}
 
 
 def _key(cls: type[CadModel], texts: Mapping[str, str]) -> str:
@@ -266,7 +291,7 @@ def _key(cls: type[CadModel], texts: Mapping[str, str]) -> str:
 def _code(cls: type[CadModel]) -> tuple[str, ...]:
     """Return the digest of a team's file, because the file may change while the service runs.
 
-    Built-in models have none.
+    Built-in models have no such digest.
     """
     if cls not in _codes:
         _codes[cls] = (digest(cls),) if is_outside(cls) else ()
@@ -278,7 +303,7 @@ _codes: dict[type[CadModel], tuple[str, ...]] = {}
 
 @contextmanager
 def _kernel(model: CadModel) -> Iterator[None]:
-    """Convert every exception of the kernel into a geometry error of this model."""
+    """Convert every exception of the kernel into a geometry error that names this model."""
     try:
         yield
     except GeometryError as error:

@@ -23,7 +23,7 @@ def outline(*corners: Point) -> list[Point]:
 
 
 def turned(points: Sequence[Point], start: float = 270.0, turn: float = 360.0) -> Shape:
-    """Return a closed line (r, z) revolved about z over a turn [deg], starting at an angle [deg] from +x.
+    """Return a closed line (r, z) revolved about z through an angle [deg], from an angle [deg] off +x.
 
     A full turn begins at -y, so that its seam is away from a hole at the crown.
     """
@@ -35,7 +35,7 @@ def turned(points: Sequence[Point], start: float = 270.0, turn: float = 360.0) -
 
 
 def turned_volume(points: Sequence[Point], turn: float = 360.0) -> float:
-    """Return the volume [mm³] of a closed line (r, z) revolved about z by an angle [deg]: ∮ r²/2 dz."""
+    """Return the volume [mm³] of a closed line (r, z) revolved about z through an angle [deg]: ∮ r²/2 dz."""
     sides = ((a[0] ** 2 + a[0] * b[0] + b[0] ** 2) * (b[1] - a[1]) for a, b in pairwise(points))
     return abs(sum(sides)) / 6 * radians(turn)
 
@@ -51,7 +51,12 @@ def drill(radius: float, reach: float, z: float = 0.0) -> Solid:
 
 
 def drilled_volume(
-    hole: float, outside: float, inside: float, groove: float = 0.0, half_groove: float = 0.0
+    hole: float,
+    outside: float,
+    inside: float,
+    groove: float = 0.0,
+    half_groove: float = 0.0,
+    offset: float = 0.0,
 ) -> float:
     """Return the volume that a radial hole removes from a cylindrical wall [mm³], from its chords.
 
@@ -64,6 +69,9 @@ def drilled_volume(
         Radii [mm] of the hole, of the wall and of the groove's bottom.
     half_groove
         Half the width of the groove [mm], which is centred on the hole; 0 for no groove.
+    offset
+        By how much the axis of an eccentric bore is below that of the wall [mm]; `inside` then is the bore at
+        the crown.
     """
     if hole == 0:
         return 0.0
@@ -71,7 +79,8 @@ def drilled_volume(
     def slice_at(t: float) -> float:
         x, z = hole * sin(t), hole * cos(t)
         in_groove = min(z, half_groove)
-        far, deep, near = (sqrt(R * R - x * x) for R in (outside, max(groove, inside), inside))
+        near = sqrt((inside + offset) ** 2 - x * x) - offset
+        far, deep = sqrt(outside**2 - x * x), sqrt(groove**2 - x * x) if groove > inside else near
         return 2 * z * (z * far - in_groove * deep - (z - in_groove) * near)
 
     kink = acos(min(half_groove / hole, 1.0))
@@ -80,7 +89,7 @@ def drilled_volume(
 
 
 def sheet_under_arc(radius: float, half_width: float) -> float:
-    """Return the area [mm²] between a diameter and the arc above it, within half a width on either side."""
+    """Return the area [mm²] between a diameter and the arc above it, up to half a width on either side."""
     x = half_width / radius
     return radius**2 * (x * sqrt(1 - x * x) + asin(x))
 
@@ -95,5 +104,5 @@ def nearest(values: Iterable[float], wanted: float) -> float:
     """
     listed = list(values)
     if not listed:
-        raise LookupError(f"the file has no surface that could measure {wanted:.9g} mm")
+        raise LookupError(f"the file has no surface with a size near {wanted:.9g} mm")
     return min(listed, key=lambda value: abs(value - wanted))

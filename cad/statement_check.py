@@ -49,9 +49,9 @@ def shown(values: Sequence[Value] | None, kind: str) -> str:
 
 
 def _dimensions(annotations: Annotations) -> Iterator[Statement]:
-    for name in annotations.dimensions:
-        one = annotations.limits[name]
-        yield Statement("dimension", name, (one.nominal, one.lower, one.upper))
+    for one in annotations.dimensions:
+        within = one.limits
+        yield Statement("dimension", one.name, (within.nominal, within.lower, within.upper))
     letters = dict.fromkeys(annotations.declared[n].to for n, f in annotations.forms if f != "cylindricity")
     for letter in letters:
         yield Statement("datum", letter, ())

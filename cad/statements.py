@@ -107,7 +107,7 @@ def read_statements(step: bytes) -> list[Statement]:
 
 
 def compared(expected: Sequence[Statement], stated: Sequence[Statement]) -> list[StatementDifference]:
-    """Compare statements of each kind in order.
+    """Compare the statements of each kind in their order.
 
     Part names may differ, because a download renames the parts.
     """
@@ -252,7 +252,7 @@ class _Reader:
                 yield Statement(kind, self._part(entity), next(values, ()))
 
     def _part(self, entity: _Entity) -> str:
-        """Return the name of the product that has a property, by way of shape, definition and formation."""
+        """Return the name of the product that has a property, found by way of shape and definition."""
         for _ in range(4):
             following = self._follow(entity.refs[:1])
             if following is None:

@@ -69,11 +69,9 @@ def write_step(
 ) -> bytes:
     """Return the parts as a STEP file in millimetres, with product names and colours.
 
-    Equal parts give equal bytes.
-
-    A single part at a single position is one product; several are an assembly. With `annotations` the file
-    also contains their dimensions and the properties of its parts, and the parameters in its header become
-    attributes.
+    Equal parts give equal bytes. A single part at a single position becomes one product, otherwise the parts
+    become an assembly. With `annotations` the file also contains their dimensions and the properties of its
+    parts, and the parameters in its header become attributes.
     """
     Interface_Static.SetCVal_s("write.step.schema", "AP242DIS")
     Interface_Static.SetCVal_s("write.step.unit", "MM")
@@ -138,7 +136,8 @@ def _fill(document: TDocStd_Document, title: str, parts: Sequence[Part]) -> dict
     products: dict[str, Product] = {}
     assembly = _named(shapes.NewShape(), title)
     for part in parts:
-        product = products[part.name] = Product(_named(shapes.NewShape(), part.name), part.solid)
+        label = _named(shapes.NewShape(), part.name)
+        product = products[part.name] = Product(label, part.solid, part.places[0])
         shapes.SetShape(product.label, product.solid.wrapped)
         for name, place in zip(part.names, part.places, strict=True):
             _named(shapes.AddComponent(assembly, product.label, place.wrapped), name)
@@ -147,12 +146,12 @@ def _fill(document: TDocStd_Document, title: str, parts: Sequence[Part]) -> dict
 
 
 def is_single(parts: Sequence[Part]) -> bool:
-    """Return whether there is one solid at one position, which needs no assembly."""
+    """Return whether there is one solid at one position, so that no assembly is needed."""
     return len(parts) == 1 and len(parts[0].places) == 1
 
 
 def _placed(solid: Shape, place: Location) -> Shape:
-    """Return a solid moved to its position, because a single product has no position of its own."""
+    """Return a solid moved to its position, because a single product cannot have a position of its own."""
     if place.wrapped.IsIdentity():
         return solid
     return Shape.cast(BRepBuilderAPI_Transform(solid.wrapped, place.wrapped.Transformation(), True).Shape())
@@ -186,7 +185,7 @@ def _bodies(document: TDocStd_Document) -> Iterator[Body]:
 def _instances(
     label: TDF_Label, place: TopLoc_Location, name: str
 ) -> Iterator[tuple[TDF_Label, TopLoc_Location, str]]:
-    """Yield the products below a label that are not assemblies, with position and name, once for each use."""
+    """Yield the products below a label that are not assemblies, with position and name, for each use."""
     components = TDF_LabelSequence()
     if not XCAFDoc_ShapeTool.GetComponents_s(label, components):
         yield label, place, name
@@ -202,7 +201,7 @@ _NO_NAME = re.compile(r"(?:NAUO)?[0-9 ]*|=>\[[0-9:]*\]")
 
 
 def _own_names(name: str, instances: list[str]) -> tuple[str, ...]:
-    """Return the names of a body's instances; empty if they say no more than the name and a number.
+    """Return the names of a body's instances; none if they only consist of the body's name and a number.
 
     An instance without a name of its own gets the name of the body.
     """

@@ -29,6 +29,8 @@ _PEN = "DRAUGHTING_PRE_DEFINED_COLOUR('{}')"
 _POINT = re.compile(r"^#\d+ = CARTESIAN_POINT\([^;]*;", re.MULTILINE)
 _NOISE = re.compile(r"-?\d+\.\d*E-(?:1[3-9]|[2-9]\d|\d{3})(?=[,)])")
 _NUMBER = re.compile(r"#(\d+) = ")
+_ANNOTATIONS = re.compile(r"^(#\d+ = DRAUGHTING_MODEL\([^;]*,\s*)#\d+\);", re.MULTILINE)
+_ROOT = re.compile(r"= SHAPE_DEFINITION_REPRESENTATION\(#\d+,#(\d+)\);")
 _PRODUCT = re.compile(r"ADVANCED_BREP_SHAPE_REPRESENTATION\('[^']*',\(([^)]*)\),(#\d+)\)")
 _SOLID = re.compile(r"^(#\d+) = (?:MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS)\(", re.MULTILINE)
 
@@ -55,18 +57,19 @@ def finished(
         attributes = {"model": header.title, "build": header.build, **header.parameters}
         lines = entities(body, first, header.model, attributes, properties)
         body = _annotated(body, names) + "".join(f"{line}\n" for line in lines)
+        body = _in_axes_of_file(body)
     return f"ISO-10303-21;\n{write_header(header, SCHEMA, KERNEL)}{body}{end}{rest}"
 
 
 def without_noise(text: str) -> str:
-    """Return the kernel's text with 0 for every coordinate below 1e-12 in magnitude."""
+    """Return the kernel's text with every coordinate below 1e-12 in magnitude replaced by 0."""
     return _POINT.sub(lambda point: _NOISE.sub("0.", point[0]), text)
 
 
 def _usage(start: str, number: int, rest: str) -> str:
-    """Return an assembly usage with its number in the file; line breaks do not depend on the kernel's number.
+    """Return an assembly usage with its number in the file; its line breaks do not depend on the kernel.
 
-    The kernel's writer may break before a comma; here a comma stays on the line of the preceding word.
+    The kernel's writer may break a line before a comma; here a comma stays on the line of the preceding word.
     """
     lines = [f"{start}'{number}',"]
     for token in _TOKEN.findall(rest.replace("\n  ", "").removesuffix(")")):
@@ -89,6 +92,23 @@ def _annotated(data: str, names: Sequence[str]) -> str:
     return _DEVIATION.sub(r"\1LENGTH_MEASURE(\2),", named)
 
 
+def _in_axes_of_file(data: str) -> str:
+    """Return the data section with its annotations in the axes of the file: in those of its first product.
+
+    The kernel gives them the context of the first annotated part. The context is the whole statement, because
+    Open CASCADE 7.9 crashes on reading a MECHANICAL_DESIGN_AND_DRAUGHTING_RELATIONSHIP to an assembly.
+    """
+    if (model := _ANNOTATIONS.search(data)) is None:
+        return data
+    root = _ROOT.search(data)
+    assert root is not None, "the kernel's file has a product"
+    context = re.search(
+        rf"^#{root[1]} = [A-Z_]*SHAPE_REPRESENTATION\([^;]*,\s*(#\d+)\s*\);", data, re.MULTILINE
+    )
+    assert context is not None, "the first product has a shape"
+    return f"{data[: model.start()]}{model[1]}{context[1]});{data[model.end() :]}"
+
+
 def _styles(data: str, colours: Iterable[Colour]) -> str:
     """Return the entities that colour the solids of the data section, product by product."""
     first = _last_number(data) + 1
@@ -104,7 +124,7 @@ def _styles(data: str, colours: Iterable[Colour]) -> str:
 def _last_number(data: str) -> int:
     """Return the number of the last entity of a data section.
 
-    Search from its end, because the section is long.
+    The search begins at its end, because the section is long.
     """
     place = data.rfind("\n#")
     while (last := _NUMBER.match(data, place + 1)) is None:

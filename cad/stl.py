@@ -12,7 +12,7 @@ _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attrib
 
 
 def write_stl(meshes: Sequence[Mesh]) -> bytes:
-    """Return a binary STL file: a header of 80 bytes, the number of triangles, 50 bytes per triangle."""
+    """Return a binary STL file: an 80-byte header, the number of triangles, 50 bytes per triangle."""
     corners = np.concatenate([points[one.triangles] for one, points, _ in placed(meshes)])
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)

@@ -36,8 +36,8 @@ Face = tuple[str, int]
 Form = Literal["plane", "cylinder", "sphere", "torus", "cone"]
 Kind = Literal["diameter", "sphere", "radius", "distance", "circle", "chamfer", "angle", "edge"]
 """Kind of a size. The faces of a `distance` from an axis lie around that axis; a `circle` is the pitch
-circle through the axes of its faces, which are holes; a `chamfer` has 45°; an `edge` is where its faces
-meet, dimensioned from the axis."""
+circle through the axes of its first faces, which are holes, about the axis of its second ones; a `chamfer`
+has 45°; an `edge` is where its faces meet, dimensioned from the axis of the first ones."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class Size(float):
     places: tuple[Place, ...]
 
     def __new__(cls, value: float, kind: Kind, *places: Place) -> Self:
-        """Return a number with references to its faces."""
+        """Return a number that refers to the faces from which it was read."""
         size = super().__new__(cls, value)
         size.kind, size.places = kind, places
         return size
@@ -92,19 +92,19 @@ class Size(float):
         return Size.distance((outer[0].diameter - inner[0].diameter) / 2, inner, outer)
 
     @staticmethod
-    def circle(holes: Sequence[Surface]) -> Size:
-        """Return the diameter of the pitch circle about z of holes along z."""
+    def circle(holes: Sequence[Surface], about: Sequence[Surface]) -> Size:
+        """Return the diameter of the pitch circle of holes along z, about z, the axis of other surfaces."""
         value = alike((2 * one.point.cross(Z).Length for one in holes), "distances of holes from the axis")
-        return Size(value, "circle", Place(faces_of(holes)))
+        return Size(value, "circle", Place(faces_of(holes), faces_of(about)))
 
     @staticmethod
     def repeated(sizes: Iterable[float], what: str) -> float:
-        """Return the common value of equal sizes, with the places of all of them.
+        """Return the common value of equal sizes, with the faces of all of them.
 
         Raises
         ------
         LookupError
-            If there is none, or they differ.
+            If there are no sizes, or they differ.
         """
         every = list(sizes)
         value = alike(every, what)
@@ -123,7 +123,7 @@ def alike(values: Iterable[float], what: str) -> float:
     Raises
     ------
     LookupError
-        If there is none, or they differ.
+        If there are no features, or their values differ.
     """
     found = [float(value) for value in values]
     if not found or max(found) - min(found) > 2 * _COINCIDENT:
@@ -181,11 +181,12 @@ class Surface:
     def moved(self, turn: Array, shift: Array) -> Surface:
         """Return the surface after its part was turned (3, 3) and then shifted (3,) [mm]."""
         point = Vector(*(turn @ self.point.toTuple() + shift))
+        middle = None if self.middle is None else Vector(*(turn @ self.middle.toTuple() + shift))
         direction = Vector(*(turn @ self.direction.toTuple()))
         along = point.dot(direction) - self.point.dot(self.direction)
         low, high = self.reach
         reach = (low + along, high + along) if self.reach != (0.0, 0.0) else self.reach
-        return replace(self, point=point, direction=direction, reach=reach)
+        return replace(self, point=point, direction=direction, reach=reach, middle=middle)
 
     def about(self, axis: Vector) -> bool:
         """Return whether the surface is coaxial with that axis through the origin."""
@@ -198,7 +199,7 @@ class Surface:
         return bool(abs(flat) < _COINCIDENT and abs(upright) < _COINCIDENT)
 
     def turned(self, axis: Vector) -> Surface:
-        """Return the same surface with its direction along the axis, not against it."""
+        """Return the same surface with its direction reversed if it points against the axis."""
         if self.direction.dot(axis) >= 0:
             return self
         low, high = self.reach
@@ -224,8 +225,13 @@ class PartSurfaces:
         """Return every surface of the part."""
         return (*self.planes, *self.cylinders, *self.spheres, *self.tori, *self.cones)
 
+    def moved(self, turn: Array, shift: Array) -> PartSurfaces:
+        """Return the surfaces after the part was turned (3, 3) and then shifted (3,) [mm]."""
+        kinds = (self.planes, self.cylinders, self.spheres, self.tori, self.cones)
+        return PartSurfaces(self.count, *(tuple(one.moved(turn, shift) for one in kind) for kind in kinds))
+
     def levels(self, axis: Vector) -> list[float]:
-        """Return the coordinates [mm] at which planes are perpendicular to the axis, ascending."""
+        """Return the coordinates along an axis of the planes perpendicular to it [mm], ascending."""
         return _distinct(plane.point.dot(axis) for plane in self.planes if plane.along(axis))
 
     def planes_at(self, axis: Vector, level: float) -> list[Surface]:
@@ -236,7 +242,7 @@ class PartSurfaces:
     def between(self, axis: Vector, first: int, last: int) -> float:
         """Return the distance between two planes perpendicular to the axis, numbered from the lowest.
 
-        -1 is the last.
+        The number -1 stands for the last plane.
         """
         levels = self.levels(axis)
         return self.apart(axis, levels[first], levels[last])
@@ -244,8 +250,8 @@ class PartSurfaces:
     def apart(self, axis: Vector, low: float, high: float, near: Vector | None = None) -> float:
         """Return the distance between the planes perpendicular to the axis at two coordinates [mm].
 
-        The result is a plain number if there is no plane at one of them. With `near`, a point, only the
-        nearest plane at each coordinate is used.
+        The result has no faces if one of the planes is missing. With `near`, a point, only the nearest plane
+        at each coordinate is used.
         """
         first, second = self.planes_at(axis, low), self.planes_at(axis, high)
         if near is not None:
@@ -259,7 +265,7 @@ class PartSurfaces:
     def chamfer(self, value: float, ring: Sequence[Surface]) -> float:
         """Return the size [mm] of a 45° chamfer at the ends of cylinders about z.
 
-        A plain number if there is no cone of that size.
+        The result has no faces if there is no cone of that size.
         """
         low, high = min(one.reach[0] for one in ring), max(one.reach[1] for one in ring)
         cones = [cone.turned(Z) for cone in self.cones if cone.about(Z)]
@@ -290,7 +296,7 @@ class PartSurfaces:
 
 
 def look(solid: Shape, count: int = 1, part: str = "") -> PartSurfaces:
-    """Return the surfaces of a solid of which there are `count` copies; `part` is its name."""
+    """Return the surfaces of a solid that is called `part` and occurs `count` times."""
     of = defaultdict[Any, list[Surface]](list)
     for number, face in enumerate(solid.Faces()):
         adaptor = BRepAdaptor_Surface(face.wrapped)
@@ -310,7 +316,7 @@ def look(solid: Shape, count: int = 1, part: str = "") -> PartSurfaces:
 
 
 def _is_reversed(face: Face3d, adaptor: BRepAdaptor_Surface, kind: Any) -> bool:
-    """Return whether the outward normal of a face is against that of a plane or cylinder, else False."""
+    """Return whether the outward normal of a plane or cylindrical face is reversed; False for other faces."""
     if kind not in (_Kind.GeomAbs_Plane, _Kind.GeomAbs_Cylinder):
         return False
     surface = adaptor.Plane() if kind == _Kind.GeomAbs_Plane else adaptor.Cylinder()

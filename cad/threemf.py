@@ -79,7 +79,7 @@ def _items(number: int, one: Mesh) -> Iterator[str]:
 
 
 def _transform(place: Location) -> str:
-    """Return the twelve numbers of a position; 3MF multiplies a row of coordinates by the matrix."""
+    """Return the twelve numbers of a position; 3MF multiplies a row vector of coordinates by the matrix."""
     turn, shift = rigid(place)
     return " ".join(f"{number + 0.0:.12g}" for number in np.concatenate([turn.T.ravel(), shift]).tolist())
 

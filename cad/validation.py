@@ -19,7 +19,7 @@ _NUMBER = re.compile(rb"^#(\d+) *=", re.MULTILINE)
 
 
 def with_validation(step: bytes) -> bytes:
-    """Return the file with the properties of each part; unchanged if it already has some.
+    """Return the file with validation properties of each part; unchanged if it already has some.
 
     Parameters
     ----------

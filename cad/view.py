@@ -15,7 +15,7 @@ _LONG = 1.5
 
 
 def view_of(extent: Array) -> Array:
-    """Return the unit vectors to the right, upwards and towards the viewer as columns (3, 3).
+    """Return the unit vectors to the right, upwards and towards the viewer, as columns (3, 3).
 
     Parameters
     ----------

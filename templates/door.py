@@ -8,7 +8,7 @@
 
 It works on the built-in templates in this process, and needs no service. An input is a text, a Pint quantity
 of any registry, an object `{"value": 25, "unit": "kN"}`, or a bare number or array where the unit is 1.
-Arrays give arrays.
+Array inputs give array results.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def built_in() -> Catalogue[Template]:
 
 
 def get(id: str, version: int | None = None) -> Version:
-    """Return one version of a built-in template; the latest, if no version is named.
+    """Return one version of a built-in template; the latest if no version is given.
 
     Raises
     ------
@@ -72,17 +72,17 @@ class Version:
 
     @property
     def inputs(self) -> dict[str, str | None]:
-        """Return the unit of each input; None where it is one of several words."""
+        """Return the unit of each input; None for a choice among words."""
         return {name: _unit(declared) for name, declared in self.template.inputs.items()}
 
     @property
     def outputs(self) -> dict[str, str | None]:
-        """Return the unit of each output; None where it is a text."""
+        """Return the unit of each output; None for a text."""
         return {name: _unit(declared) for name, declared in self.template.formulas.items()}
 
     @property
     def levels(self) -> tuple[str, ...]:
-        """Return the levels of fidelity, cheapest first; none where a template has one level only."""
+        """Return the levels of fidelity, cheapest first; empty if the template has a single level."""
         return self.template.levels
 
     @property
@@ -99,28 +99,27 @@ class Version:
         per_point: bool = False,
         **inputs: Any,
     ) -> Calculation:
-        """Calculate for these inputs.
+        """Return a calculation for these inputs.
 
         Parameters
         ----------
         level
-            The level of fidelity; the template's own choice, if None. An output is computed when it is first
-            asked for.
+            The level of fidelity; None selects the template's default. An output is computed when it is first
+            read.
         tolerance
-            The largest relative error wanted. The cheapest level whose measured error meets it for all
-            `outputs`, at all points, computes these at once.
+            The largest acceptable relative error. The outputs are computed at once, at the cheapest level
+            whose measured error is within the tolerance for all `outputs` at all points.
         outputs
-            The outputs that the tolerance is about; all, if None.
+            The outputs to which the tolerance applies; None means all.
         per_point
-            Whether each point of arrays has the cheapest level of its own.
+            Whether each point of an array gets its own cheapest level.
         **inputs
             The template's inputs by name.
 
         Raises
         ------
         InvalidInputs
-            Naming every wrong input at once, with what would be right; or if `outputs` comes without a
-            tolerance.
+            With every wrong input and what would be right; also if `outputs` is given without a tolerance.
         """
         raw = {name: _written(value) for name, value in inputs.items()}
         if tolerance is None:
@@ -175,18 +174,18 @@ class Calculation:
 
     @property
     def warnings(self) -> list[Notice]:
-        """Return the warnings about the results computed so far: name, code and sentence each."""
+        """Return the warnings about the results computed so far, each with name, code and sentence."""
         if self._complete:
             return list(self._warnings)
         return [*self._warnings, *criterion_warnings(self.template, self._answers, self._errors)]
 
     def answer(self, name: str) -> Answer:
-        """Return a result like the service: a value in its unit, or no value and the reason.
+        """Return a result in the form of the service: a value in its unit, or no value and the reason.
 
         Raises
         ------
         InvalidInputs
-            If the result is out of its domain, or if a tolerance chose the level for other outputs.
+            If the result is outside its domain, or if a tolerance chose the level for other outputs.
         """
         if name not in self._answers:
             if self._complete:
@@ -199,7 +198,7 @@ class Calculation:
         return self._answers[name]
 
     def reasons(self, name: str) -> Any:
-        """Return the reason for each point without a value, None for the others; None if all have values."""
+        """Return the reason for each point without a value, None for others; None if all have values."""
         return self.answer(name).reasons
 
 
@@ -219,7 +218,7 @@ class Errors(dict[str, Any]):
 
 
 def _plain(error: Any) -> Any:
-    """Return a single estimate as a float, or None if it is unknown; an array unchanged."""
+    """Return a single estimate as a float, or None if it is unknown; return an array unchanged."""
     if error is None or np.ndim(error):
         return error
     return None if error != error else float(error)

@@ -35,7 +35,7 @@ def present(session: Session, row: RevisionRow) -> Present:
 
 
 def criteria_of(session: Session, row: RevisionRow) -> list[Criterion]:
-    """Return the criteria of a revision as judged; with variants, each criterion at its worst variant."""
+    """Return the judged criteria of a revision; with variants, each has the verdict of its worst variant."""
     judged = results_of(session, row).judged.get("criteria")
     return judged if isinstance(judged, list) else []
 
@@ -72,7 +72,7 @@ def require_files(row: RevisionRow, now: Present) -> Files:
     bare = [model.name for model in row.models if STEP not in now.files.get(model.name, {})]
     bare += [name for name, kinds in now.files.items() if STEP not in kinds and name not in bare]
     if bare:
-        raise NotReady(f"revision {row.number} has no solid of {', '.join(bare)}: set its parameters first")
+        raise NotReady(f"{', '.join(bare)} has no solid: set its dimensions before signing")
     return now.files
 
 

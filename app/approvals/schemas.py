@@ -203,5 +203,6 @@ class Block(Answer):
     revision: int = Field(ge=1, le=10**9)
     units: Literal["si", "us"]
     has_variants: bool = Field(False, description="whether the report covers all variants")
+    has_appendix: bool = Field(False, description="whether that report has its appendix")
     state: ApprovalState
     steps: list[BlockStep] = Field(max_length=4)

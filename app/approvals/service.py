@@ -194,7 +194,7 @@ def _shown(session: Session, row: RevisionRow) -> Approvals:
 
 
 def _obstacle(row: RevisionRow, taken: list[ApprovalRow], held: Present) -> str | None:
-    """Return why the acting principal cannot take the next step now."""
+    """Return the reason why the acting principal cannot take the next step now."""
     following = next_step(taken)
     if following is None:
         return None

@@ -63,5 +63,7 @@ def _shape(columns: dict[str, NDArray[np.float64]]) -> tuple[int, ...]:
     shapes = {column.shape: name for name, column in columns.items() if column.ndim}
     if len(shapes) > 1:
         (first, one), (second, other), *_ = shapes.items()
-        raise NoArray(f"{one} has the shape {first} and {other} has {second}; name outputs of one shape")
+        raise NoArray(
+            f"{one} has the shape {first}, but {other} has {second}; request outputs of equal shape"
+        )
     return next(iter(shapes), ())

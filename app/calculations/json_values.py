@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def rendered(ordered: Sequence[Judgement]) -> JsonObject:
-    """Return `criteria`, worst first, and the overall `verdict`; an empty result without criteria."""
+    """Return `criteria`, worst first, and the overall `verdict`; empty if there are no criteria."""
     if not ordered:
         return {}
     return {"criteria": [criterion(judgement) for judgement in ordered], "verdict": verdict(ordered)}

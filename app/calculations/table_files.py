@@ -48,7 +48,7 @@ def file_text(content: bytes, most_bytes: int, most_unpacked: int, most_rows: in
 
 
 def _decoded(content: bytes) -> FileText:
-    """Return the text, decoded from UTF-8, UTF-16, or else Windows-1252."""
+    """Return the text, decoded as UTF-8, as UTF-16, or otherwise as Windows-1252."""
     if content.startswith((b"\xff\xfe", b"\xfe\xff")):
         return FileText(content.decode("utf-16", errors="replace"), ("UTF-16",))
     sample = content[:_SAMPLE]

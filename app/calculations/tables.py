@@ -124,7 +124,7 @@ class _Marks:
 
     @property
     def assumed(self) -> list[str]:
-        """Return a sentence on each assumed decimal and thousands mark."""
+        """Return one sentence for each assumption about a decimal or thousands mark."""
         taken = [
             f"decimal {name}" for name, is_met in (("comma", self.comma), ("point", self.point)) if is_met
         ]
@@ -302,7 +302,7 @@ def _cells(row: int, line: str, separator: str) -> list[str]:
 
 
 def _headings(lines: Sequence[_Line], faults: _Faults) -> tuple[list[str], list[_Unit], Sequence[_Line]]:
-    """Return names and units of the columns (None where a unit is wrong), and the lines below them."""
+    """Return the names and units of the columns (None where a unit is wrong), and the lines below them."""
     first = lines[0]
     if not _is_words(first):
         return [f"column {n}" for n in range(1, len(first.cells) + 1)], [_NO_UNIT] * len(first.cells), lines

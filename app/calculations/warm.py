@@ -14,7 +14,7 @@ from app.workers.priority import give_way
 
 
 def rehearse(has_come: Callable[[], bool]) -> None:
-    """Lower this process' priority below the server's; called once before its first request."""
+    """Lower this process's priority below the server's; it is called once, before the first request."""
     give_way()
 
 

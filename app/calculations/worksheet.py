@@ -22,7 +22,7 @@ def run_worksheet(cls: type[Template], body: EvaluateIn, system: System) -> Json
     Raises
     ------
     InvalidInputs, TooManyValues
-        As `evaluate`.
+        As raised by `evaluate`.
     """
     return worksheet(evaluated(cls, body), system)
 

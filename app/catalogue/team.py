@@ -243,7 +243,7 @@ def _taken(key: Key, by: TeamFile | None) -> FileFault:
 
 
 def _reason(file: TeamFile) -> str:
-    """Return why a file cannot be used, in one sentence."""
+    """Return one sentence that says why a file cannot be used."""
     first = next(fault for fault in file.faults if fault.quarantines)
     more = len(file.faults) - 1
     others = f", and {more} more" if more else ""

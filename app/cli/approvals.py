@@ -70,6 +70,10 @@ def verify_report_command(ctx: click.Context, file: Path, url: str | None, data:
 def _verified(client: Client, pdf: bytes, block: Block) -> list[Line]:
     approvals = client.approvals(block.design, block.revision)
     printed = client.report(
-        block.design, revision=block.revision, units=block.units, variants=block.has_variants
+        block.design,
+        revision=block.revision,
+        units=block.units,
+        variants=block.has_variants,
+        appendix=block.has_appendix,
     )
     return list(verify(pdf, block, approvals, printed))

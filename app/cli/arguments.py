@@ -29,7 +29,7 @@ def argument(name: str, text: str) -> Raw:
     try:
         return json.loads(text)
     except ValueError as error:
-        raise _wrong(name, "not_json", f"{text[:60]!r} is not a list or object of JSON: {error}") from None
+        raise _wrong(name, "not_json", f"{text[:60]!r} is not a JSON list or object: {error}") from None
 
 
 def _curve(name: str, text: str) -> Raw:

@@ -24,7 +24,7 @@ def demo_command(data: Path | None, team: bool) -> None:
         demonstrate(data or Settings().data)
         return
     if data is not None:
-        raise click.UsageError("--team keeps nothing, so it takes no --data")
+        raise click.UsageError("--team stores nothing, so it takes no --data")
     from app.cli.team_demonstration import demonstrate_team
 
     demonstrate_team()

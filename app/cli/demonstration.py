@@ -88,7 +88,7 @@ def service(data: Path, *, err: bool = False, key: str | None = None) -> Iterato
 
 
 def _await(client: Client, process: subprocess.Popen[bytes], log: Path, *, err: bool = False) -> None:
-    """Wait until the service answers or its process ends, and report progress now and then.
+    """Wait until the service answers or its process ends, and report progress from time to time.
 
     Raises
     ------

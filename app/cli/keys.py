@@ -166,7 +166,7 @@ def _state(key: ApiKeyRow) -> str:
 
 
 def _moment(span: str | None) -> datetime | None:
-    """Return the moment that lies a duration such as `90d` after now."""
+    """Return the moment that follows the present one by a duration such as `90d`."""
     if span is None:
         return None
     if (match := _SPAN.fullmatch(span)) is None:

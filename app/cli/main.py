@@ -30,7 +30,7 @@ class SettableCommands(click.Group):
 
 
 def _wrong_settings(error: ValueError) -> str:
-    """Return a sentence on wrong settings; empty if the error is not about settings."""
+    """Return a sentence about wrong settings; it is empty if the error is not about settings."""
     # Pydantic is imported here because commands without settings, such as `--version`, do not need it.
     from pydantic import ValidationError
     from pydantic_settings import SettingsError

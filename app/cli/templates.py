@@ -66,7 +66,7 @@ def evaluate_command(
         evaluation = evaluate_template(cls, raw, outputs=outputs or None)
     except InvalidInputs as error:
         lines = "\n".join(f"  {fault.name}: {fault.detail}" for fault in error.faults)
-        raise click.ClickException(f"{cls.id} version {cls.version} refuses:\n{lines}") from None
+        raise click.ClickException(f"{cls.id} version {cls.version} refuses these inputs:\n{lines}") from None
     if as_json:
         from app.calculations import json_values
 

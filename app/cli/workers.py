@@ -52,7 +52,7 @@ def scheduler_command(host: str, port: int) -> None:
 
 
 def _become(module: str, *args: str) -> NoReturn:
-    """Replace this process by another program, which imports only the modules that it needs."""
+    """Replace this process with another program, which imports only the modules that it needs."""
     command = [sys.executable, "-c", _BOOT.format(module), json.dumps(sys.path), *args]
     sys.stdout.flush()
     os.execv(sys.executable, command)

@@ -201,7 +201,7 @@ def build(key: str) -> Exchange[Build]:
 def model(id: str, kind: str = "step", *, on_progress: Progress | None = None) -> Exchange[bytes]:
     """Return a file of the design's newest valid model.
 
-    The kind is step, validated.step, glb, stl, 3mf, brep, svg, png, drawing.svg, drawing.pdf or dxf.
+    The kind is one of `cad.file_kinds.MEDIA_TYPES`, such as `step`, `stl` or `drawing.pdf`.
     """
     return _file(f"/designs/{id}/model.{kind}", on_progress)
 
@@ -233,15 +233,17 @@ def report(
     revision: int | None = None,
     units: System = "si",
     variants: bool = False,
+    appendix: bool = False,
     on_progress: Progress | None = None,
 ) -> Exchange[bytes]:
     """Return the calculation report of a revision, by default the newest, with all its pictures.
 
-    The format is pdf or html. `variants` selects the report of all its variants. The quantities are in
-    `units`, "si" or "us".
+    The format is pdf or html. `variants` selects the report of all its variants, and `appendix` adds the
+    worksheet of the variant that governs. The quantities are in `units`, "si" or "us".
     """
     one, all = f"/revisions/{revision}" if revision else "", "/variants" if variants else ""
-    return _file(f"/designs/{id}{one}{all}/report.{kind}?units={units}", on_progress)
+    more = "&appendix=true" if appendix else ""
+    return _file(f"/designs/{id}{one}{all}/report.{kind}?units={units}{more}", on_progress)
 
 
 def picture(id: str, version: int, *, on_progress: Progress | None = None) -> Exchange[bytes]:

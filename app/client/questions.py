@@ -60,7 +60,7 @@ def impact(
     units: System = "si",
     on_progress: Progress | None = None,
 ) -> Exchange[Impact]:
-    """Return how a version would change the designs that use another one, worst first; nothing is saved.
+    """Return how this version would change the designs that use another version, worst first; saves nothing.
 
     It covers all designs that are not archived, unless ids, a part of the name or tags select some.
     """

@@ -72,7 +72,7 @@ def questions(name: str, model: Model, cls: type[CadModel]) -> tuple[dict[str, Q
 
 
 def remedy(reference: Reference, models: Mapping[str, Mapping[str, Question]]) -> str | None:
-    """Return a remedy for an unknown name that refers to an analysis; None if it refers to no analysis."""
+    """Return a remedy for an unknown name that looks like an analysis output; None for other names."""
     model, kind, output = reference.block, reference.analysis, reference.output
     if model not in models or kind not in KINDS or not output:
         return None

@@ -53,7 +53,7 @@ class Choices:
         return relation.decided(words)
 
     def _choice(self, name: str) -> tuple[Choice, Raw]:
-        """Return the declaration of a choice, and the value that the document gives it."""
+        """Return the declaration of a choice, and the option that the document selects."""
         reference = Reference.parse(name)
         cls, values = self._block(name, reference.block)
         declared = cls.inputs.get(reference.member) if cls else None

@@ -139,7 +139,7 @@ def _outputs(step: JsonObject) -> dict[str, Json]:
 
 
 def _versions(steps: Mapping[str, JsonObject], calculated: Mapping[str, JsonObject]) -> dict[str, str]:
-    """Return for each step its version, the first digits of its code's digest, and its level."""
+    """Return each step's version, level, and the first digits of its code's digest."""
     texts: dict[str, str] = {}
     for name, step in steps.items():
         done = calculated.get(name, {})
@@ -156,7 +156,7 @@ def _model_versions(row: RevisionRow) -> dict[str, str]:
 
 
 def _criteria(results: JsonObject) -> Iterator[tuple[str, VerdictOf]]:
-    """Yield name and verdict of each stored criterion; step results may store names without the step."""
+    """Yield the name and verdict of each stored criterion; step results may store names without the step."""
     for item in results.get("criteria", ()):
         yield item["name"], _verdict(item)
     for name, step in results.get("steps", {}).items():

@@ -48,7 +48,8 @@ def _explainable(parameters: Sequence[str], criteria: Sequence[str]) -> str:
 def explain_criterion(document: Document, calculation: Calculation, name: str) -> JsonObject:
     """Return the explanation of a verdict, with the values on both sides traced as far as possible.
 
-    If the step does not compute a required output, the criterion was not judged and has no `criterion` entry.
+    If the step does not compute a required output, the criterion was not judged, and the answer has no
+    `criterion`.
     """
     verdicts = Verdicts(calculation)
     name = name.removeprefix(PREFIX)
@@ -90,9 +91,9 @@ class _Sides:
         return self._limit(self.subject.criterion.limits_by_name[name])
 
     def _limit(self, limit: Limit) -> JsonObject:
-        """Return the origin of a limit that the calculation does not use.
+        """Return the origin of a limit that the calculation itself does not use.
 
-        The origin is the step, a library row, a default, or nothing.
+        The origin is the step, a library row, a default, or empty.
         """
         block = self.subject.block
         assert block is not None, "a criterion of the design declares no limits"

@@ -70,7 +70,7 @@ def read_budget(raw: Raw) -> float:
 def decided(
     asked: DecisionQuestion, database: Database, catalogues: Catalogues
 ) -> Reply[DecisionQuestion, Decision]:
-    """Return the decision, and the request to continue if a step is still being calculated.
+    """Return the decision, and the request to continue with if a step is still being calculated.
 
     Raises
     ------
@@ -113,7 +113,7 @@ def _decided(asked: DecisionQuestion, designs: Mapping[str, Calculation]) -> dic
 
 
 def _pending(calculation: Calculation) -> ClimbResult:
-    """Return the result for a design whose steps are still being calculated."""
+    """Return the interim result for a design whose steps are still being calculated."""
     judgements = sorted(Verdicts(calculation).all(), key=lambda judgement: judgement.name)
     return ClimbResult(judgements, None, (), (), (), "pending")
 

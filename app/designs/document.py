@@ -119,6 +119,30 @@ class WrittenCriterion(Bounded):
         return _without_nothing(plain(self), *type(self).model_fields)
 
 
+MOST_COLUMNS = 40
+COLUMN = r"^[A-Za-z][A-Za-z0-9_]{0,63}(\.[A-Za-z][A-Za-z0-9_]{0,63}){0,2}(\[[1-9][0-9]{0,5}\])?$"
+ColumnName = Annotated[str, StringConstraints(pattern=COLUMN)]
+"""A parameter, `step.output`, an item of a list `step.output[1]`, `model.mass`, `model.analysis.output`."""
+
+
+class TableOfResults(Bounded):
+    """The columns of the table in which variants are compared, in their order."""
+
+    model_config = _STRICT
+
+    columns: Annotated[list[ColumnName], Field(max_length=MOST_COLUMNS)] = Field(
+        [],
+        description="values of the design; if empty, the results that its templates name",
+        examples=[["film.speed", "film.minimum_film_thickness", "shell.mass"]],
+    )
+    changes: bool = Field(False, description="whether each row also shows its change from the first row")
+
+    @model_serializer(mode="wrap")
+    def without_nothing(self, plain: SerializerFunctionWrapHandler) -> JsonObject:
+        """Remove members that are empty or false, so that equal documents have one stored form."""
+        return _without_nothing(plain(self), "columns", "changes")
+
+
 def _in_natural_order(variants: dict[str, dict[str, Raw]]) -> dict[str, dict[str, Raw]]:
     """Return variants in natural order of their names: main_2 before main_10."""
     return {name: variants[name] for name in sorted(variants, key=natural)}
@@ -149,16 +173,17 @@ class Document(Bounded):
         description="named sets of values that override parameters, inputs of steps and parameters of models",
         examples=[{"main_1": {"clearance": "55 um"}, "main_2": {"film.bearing_width": "= width - 2 mm"}}],
     )
+    table: TableOfResults = Field(TableOfResults(), description="the table in which variants are compared")
 
     @model_serializer(mode="wrap")
     def without_nothing(self, plain: SerializerFunctionWrapHandler) -> JsonObject:
-        """Remove empty criteria and variants, so that equal documents have one stored form."""
-        return _without_nothing(plain(self), "criteria", "variants")
+        """Remove empty criteria, variants and table, so that equal documents have one stored form."""
+        return _without_nothing(plain(self), "criteria", "variants", "table")
 
     @model_validator(mode="before")
     @classmethod
     def one_model(cls, raw: Raw) -> Raw:
-        """Replace `model` by `models` with one entry, named `model`."""
+        """Replace `model` with `models`, which has one entry, named `model`."""
         if not isinstance(raw, Mapping):
             return raw
         if "model" in raw and "models" in raw:
@@ -186,7 +211,7 @@ def _without_nothing(plain: JsonObject, *names: str) -> JsonObject:
 
 
 def _values_set(raw: Mapping[str, Raw]) -> int:
-    """Count the values that steps and models set, even in a malformed document."""
+    """Return the number of values that steps and models set; it accepts a malformed document too."""
     places = (("steps", "inputs"), ("steps", "limits"), ("models", "parameters"))
     groups = [(group, part) for name, part in places if isinstance(group := raw.get(name), Mapping)]
     blocks = [(block, part) for group, part in groups for block in group.values()]
@@ -195,7 +220,7 @@ def _values_set(raw: Mapping[str, Raw]) -> int:
 
 
 def _overrides_set(raw: Mapping[str, Raw]) -> int:
-    """Count the values that variants override, even in a malformed document."""
+    """Return the number of values that variants override; it accepts a malformed document too."""
     variants = raw.get("variants")
     inside = variants.values() if isinstance(variants, Mapping) else ()
     return sum(len(values) for values in inside if isinstance(values, Mapping))
@@ -207,6 +232,10 @@ def _in_models(raw: Mapping[str, Raw]) -> Mapping[str, Json]:
         return raw
     rest = {key: value for key, value in raw.items() if key != "model"}
     return {**rest, "models": {"model": raw["model"]}}
+
+
+StoredDocument = JsonObject
+"""A document as a revision stores it: `Document.model_dump` in JSON mode, by any version of the program."""
 
 
 def merge(document: Mapping[str, Json], patch: Mapping[str, Raw]) -> JsonObject:
@@ -232,10 +261,10 @@ def _merged(old: Json, patch: Json, path: tuple[str, ...]) -> Json:
 def _is_container(path: tuple[str, ...]) -> bool:
     """Return whether a patch is merged into a value instead of replacing it.
 
-    Containers are the document, its groups, its steps and models, and their parts.
+    The document, its groups, its steps and models, and their parts are containers.
     """
     match path:
-        case () | ("parameters" | "steps" | "models" | "criteria" | "variants",):
+        case () | ("parameters" | "steps" | "models" | "criteria" | "variants" | "table",):
             return True
         case ("steps" | "models" | "variants", _):
             return True

@@ -60,7 +60,8 @@ def network_of(graph: Graph) -> DesignNetwork:
 def _columns(graph: Graph) -> dict[str, int]:
     """Return the column of every parameter and block, in the order of calculation.
 
-    A block depends neither on a later block whose input it uses, nor on the assumed value of an iteration.
+    A step that uses an input of a later block does not depend on that block, nor on a value assumed in an
+    iteration.
     """
     columns: dict[str, int] = {}
     for name in _ordered(graph):
@@ -70,7 +71,7 @@ def _columns(graph: Graph) -> dict[str, int]:
 
 
 def _ordered(graph: Graph) -> Iterator[str]:
-    """Yield the names of parameters and blocks in calculation order, or as written if there is none."""
+    """Yield the names of parameters and blocks in calculation order, or else in document order."""
     nodes = graph.order or (*graph.parameters.values(), *graph.blocks.values())
     for node in nodes:
         if isinstance(node, Block) or (isinstance(node, Cell) and node.declared is None):
@@ -78,7 +79,7 @@ def _ordered(graph: Graph) -> Iterator[str]:
 
 
 def _cells(graph: Graph, name: str) -> list[Cell]:
-    """Return the cells of a block; for a parameter, the parameter itself."""
+    """Return the cells of a block, or the cell of a parameter."""
     block = graph.blocks.get(name)
     return list(block.cells.values()) if block else [graph.parameters[name]]
 

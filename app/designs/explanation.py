@@ -34,7 +34,7 @@ class ExplanationQuestion:
 def explanation(
     asked: ExplanationQuestion, database: Database, catalogues: Catalogues
 ) -> Reply[ExplanationQuestion, Explanation]:
-    """Return the explanation, or the request to continue if a step is deferred.
+    """Return the explanation, or the request to continue with if a step is deferred.
 
     Raises
     ------
@@ -50,9 +50,9 @@ def explanation(
 def explained(
     document: Document, calculation: Calculation, catalogues: Catalogues, name: str, system: System = "si"
 ) -> Explanation:
-    """Return where a model parameter or the verdict of a criterion comes from, with sensitivities.
+    """Return the origin of a model parameter or of a criterion's verdict, with sensitivities.
 
-    Quantities and slopes are in the system of units; typed values are not converted.
+    Quantities and slopes are in the requested system of units; typed values are not converted.
 
     Raises
     ------

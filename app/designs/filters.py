@@ -70,7 +70,7 @@ def _of_newest(session: Session, wanted: DesignFilter) -> Iterator[ColumnElement
 
 
 def _has_step(session: Session, id: str, version: int | None) -> ColumnElement[bool]:
-    """Return a condition that a step of the revision uses a template; it searches the stored JSON."""
+    """Return the condition that a step of the revision uses a template; it searches the stored JSON."""
     steps = func.json_each(_document(session)["steps"]).table_valued(column("value", JSON), name="step")
     step = steps.c.value
     query = select(1).select_from(steps).where(step["template"].as_string() == id)
@@ -86,7 +86,7 @@ def _document(session: Session) -> ColumnElement[JSON]:
 
 
 def _has_model(id: str, version: int | None) -> ColumnElement[bool]:
-    """Return a condition that the revision has a CAD model of this kind."""
+    """Return the condition that the revision has a CAD model with this id."""
     query = select(1).where(
         RevisionModelRow.design_id == RevisionRow.design_id,
         RevisionModelRow.number == RevisionRow.number,

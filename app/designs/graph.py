@@ -32,7 +32,7 @@ from app.designs.network import (
 )
 from app.designs.sizes import in_declared_sizes
 from app.plain import Json, Raw
-from app.reference import Reference
+from app.reference import ItemReference, Reference
 from templates.core.catalogue.discovery import Catalogue
 from templates.core.criteria.limits import GivenLimit, read_limits
 from templates.core.errors import Fault, FaultyText, InvalidInputs, UnknownTemplate, plain, unknown_names
@@ -56,7 +56,7 @@ __all__ = ["Block", "Catalogues", "Cell", "Graph", "build_graph", "raise_if"]
 def build_graph(document: Document, catalogues: Catalogues) -> tuple[Graph, list[Fault]]:
     """Return the network of a document, and all faults that can be found before any value is known.
 
-    A network with faults can still be used to preview its valid parts, but not for a save.
+    The valid parts of a network with faults can still be previewed, but it cannot be saved.
     """
     if faults := list(too_many_relations(document)):
         return Graph({}, {}, frozenset()), faults
@@ -66,7 +66,12 @@ def build_graph(document: Document, catalogues: Catalogues) -> tuple[Graph, list
         *document.models,
     } - network.blocks.keys()  # relations that use them are not reported
     links = {cell: _links(network, cell, unread) for cell in network.cells() if cell.uses}
-    if faults := [*faults, *_unknown(network, links), *unknown_names_in(network, unread)]:
+    unknown = [
+        *_unknown(network, links),
+        *unknown_names_in(network, unread),
+        *_unknown_columns(network, unread),
+    ]
+    if faults := [*faults, *unknown]:
         return _graph(network), faults
     sources = _sources(network, links)
     order, faults = ordered(network, sources)
@@ -88,6 +93,7 @@ def _graph(
         network.blocks,
         network.assumed,
         network.demands,
+        network.columns,
         sources or {},
         order,
         kinds or {},
@@ -95,7 +101,7 @@ def _graph(
 
 
 def _network(document: Document, catalogues: Catalogues) -> tuple[Network, list[Fault]]:
-    """Return the parameters and blocks of a document, and the faults of those that cannot be read."""
+    """Return the parameters and blocks of a document, and the faults of all that cannot be read."""
     faults: list[Fault] = []
     parameters: dict[str, Cell] = {}
     choices = Choices(document, catalogues)
@@ -108,7 +114,8 @@ def _network(document: Document, catalogues: Catalogues) -> tuple[Network, list[
         faults += wrong
     assumed = frozenset(Reference.parse(iteration.through) for iteration in document.iterations)
     demands, wrong = read_demands(document, blocks)
-    return Network(parameters, blocks, assumed, demands), [*faults, *wrong]
+    columns = tuple(map(ItemReference.parse, document.table.columns))
+    return Network(parameters, blocks, assumed, demands, columns), [*faults, *wrong]
 
 
 def _cell(
@@ -176,7 +183,7 @@ def _related_limits(
 def _limits(
     name: str, raw: Mapping[str, Raw], cls: type[Template]
 ) -> tuple[dict[str, GivenLimit], list[Fault]]:
-    """Return the limits of a step that are quantities, or come from a library row, and the faults."""
+    """Return the limits of a step that are quantities or come from a library row, and the faults."""
     try:
         return read_limits(cls.declared_criteria, raw), []
     except InvalidInputs as error:
@@ -219,9 +226,9 @@ def _cells(
 
 
 def _links(network: Network, cell: Cell, unread: Set[str]) -> dict[Reference, Node | None]:
-    """Return the node for each name that a cell uses, or None if no such node exists.
+    """Return the node of each name that a cell uses, or None if there is no such node.
 
-    Values that iterations assume are left out.
+    Values that iterations assume are omitted.
     """
     return {
         reference: network.node(reference)
@@ -257,6 +264,16 @@ def _unknown(network: Network, links: Links) -> Iterator[Fault]:
         ):
             detail = f"an iteration needs a measurement of a model, such as `model.mass`, not {through}"
             yield Fault("iterations", "unknown_name", remedy(through, models) or detail)
+
+
+def _unknown_columns(network: Network, unread: Set[str]) -> Iterator[Fault]:
+    """Yield a fault for each column of the table of results that names no value of the design."""
+    models = {block.name: block.analyses for block in network.blocks.values() if block.is_model}
+    columns = dict.fromkeys(column.reference for column in network.columns)
+    unknown = [one for one in columns if one.block not in unread and not network.has(one)]
+    faults = unknown_names(map(str, unknown), network.names(), "value")
+    for reference, fault in zip(unknown, faults, strict=True):
+        yield Fault("table.columns", fault.code, remedy(reference, models) or fault.detail)
 
 
 def _sources(network: Network, links: Links) -> dict[Node, tuple[Node, ...]]:
@@ -327,7 +344,7 @@ def ordered(
 
 
 def _named(network: Network, cycle: Sequence[Node]) -> Iterator[str]:
-    """Yield the names along a cycle of nodes, as its relations use them; the last node is the first."""
+    """Yield the names along a cycle of nodes as its relations use them; the last node equals the first."""
     for node, following in pairwise(cycle):
         if isinstance(node, Cell):
             yield node.name
@@ -376,7 +393,10 @@ def _kind(network: Network, kinds: Mapping[str, Kind], cell: Cell) -> Kind:
     if cell.declared is not None:
         for relation in cell.relations:
             _check_target(cell, relation, used)
-    return replace(cell.relations[0].kind(used), literal=False, pi=0, twos=frozenset())
+    kind = replace(cell.relations[0].kind(used), literal=False, pi=0, twos=frozenset())
+    if cell.declared is None:
+        _check_steps(cell, kind, kind.unit)
+    return kind
 
 
 def _check_target(cell: Cell, relation: Relation, used: Mapping[str, Kind]) -> None:
@@ -387,6 +407,13 @@ def _check_target(cell: Cell, relation: Relation, used: Mapping[str, Kind]) -> N
         raise FaultyText("unit_mismatch", message)
     if why := relation.misfit(used, declared.meaning.accepted):
         raise FaultyText("unit_mismatch", f"{cell.name} is in {declared.meaning.unit}{why}")
+    _check_steps(cell, kind_of(declared.meaning.accepted), declared.meaning.unit)
+
+
+def _check_steps(cell: Cell, kind: Kind, shown: str) -> None:
+    for rounding in cell.roundings:
+        if why := rounding.misfit(kind, shown):
+            raise FaultyText("unit_mismatch", f"{cell.name} is in {shown}{why}")
 
 
 LONGEST_PLACE = 200  # characters of the place in a fault
@@ -414,7 +441,7 @@ def _fault(error: Mapping[str, Json]) -> Fault:
 def resolved(document: Document, catalogues: Catalogues) -> Document:
     """Return the document with pinned versions, and every size under the name that its step declares.
 
-    Both are resolved once, when a step or model is added.
+    Both are resolved once, when the user adds a step or model.
     """
     pinned = _pinned(document, catalogues)
     pairs = {f"{step}.{other}": f"{step}.{name}" for step, other, name in _other_sizes(pinned, catalogues)}
@@ -422,7 +449,7 @@ def resolved(document: Document, catalogues: Catalogues) -> Document:
 
 
 def _other_sizes(document: Document, catalogues: Catalogues) -> Iterator[tuple[str, str, str]]:
-    """Yield step, typed name and declared name for each size that a document gives under another name."""
+    """Yield step, typed name and declared name of each size that a document gives under another name."""
     overridden = {place for overrides in document.variants.values() for place in overrides}
     for name, step in document.steps.items():
         cls, _ = _class(catalogues.templates, name, step.template, step.version)
@@ -467,7 +494,7 @@ def starts(document: Document) -> dict[Reference, float]:
 
 
 def settled(results: Mapping[str, list[Mapping[str, Raw]]] | None) -> dict[Reference, float]:
-    """Return the final values [SI] of the iterations of a revision, from its stored results."""
+    """Return the final values [SI] of a revision's iterations, from its stored results."""
     rounds = (results or {}).get("iterations", [])
     values = {str(one["through"]): (float(str(one["assumed"])), str(one["unit"])) for one in rounds}
     return {Reference.parse(name): float(unit(scale).to_si(value)) for name, (value, scale) in values.items()}

@@ -98,7 +98,7 @@ def _apply(session: Session, row: DesignRow, change: LabelsIn) -> None:
 
 
 def _record(session: Session, id: str, before: Labels, after: Labels) -> None:
-    """Record a change of labels in the audit log, if there is one."""
+    """Record a change of labels in the audit, if the service has one."""
     if before.tags != after.tags:
         record(session, "design.tag", f"designs/{id}")
     if before.archived != after.archived:

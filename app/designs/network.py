@@ -18,7 +18,7 @@ from functools import cached_property
 from app.designs.analyses import is_measured, is_table, measured_names, measured_unit, used
 from app.designs.document import Document, WrittenCriterion
 from app.plain import Raw
-from app.reference import Reference
+from app.reference import ItemReference, Reference
 from app.solids.questions import Question
 from cad.model import CadModel
 from templates.core.criteria.criterion import (
@@ -36,6 +36,7 @@ from templates.core.language.template import Template
 from templates.core.units.nodes import Kind, kind_of
 from templates.core.units.quantity import read_any
 from templates.core.units.relation import Relation
+from templates.core.units.rounding import Rounding
 
 LIMITS = "limits"  # marks a reference to a limit, at the position of an analysis name: film.limits.pressure
 
@@ -56,8 +57,22 @@ class Cell:
 
     @cached_property
     def tests(self) -> Mapping[str, Reference]:
-        """Return the choices that the relations test; these are already resolved."""
+        """Return the choices that the relations test; their results are already resolved."""
         return {name: Reference.parse(name) for relation in self.relations for name in relation.decided_by}
+
+    @cached_property
+    def roundings(self) -> tuple[Rounding, ...]:
+        """Return the rules by which its relations are rounded."""
+        return tuple(one.rounding for one in self.relations if one.rounding is not None)
+
+    @cached_property
+    def calculated(self) -> Cell:
+        """Return the cell without its roundings."""
+        texts = {relation.text: relation.calculated.text for relation in self.relations}
+        items = self.raw if isinstance(self.raw, list) else [self.raw]
+        bare = [texts.get(item.strip(), item) if isinstance(item, str) else item for item in items]
+        raw = bare if isinstance(self.raw, list) else bare[0]
+        return replace(self, raw=raw, relations=tuple(one.calculated for one in self.relations))
 
     @cached_property
     def relations_by_text(self) -> Mapping[str, Relation]:
@@ -139,6 +154,7 @@ class Network:
     blocks: dict[str, Block]
     assumed: frozenset[Reference]  # the measurements that declared iterations assume
     demands: Mapping[str, Demand] = field(default_factory=dict)  # criteria written in the design
+    columns: tuple[ItemReference, ...] = ()  # of the table of results, if the design chooses them
 
     def cells(self) -> Iterator[Cell]:
         """Yield every cell of the design."""
@@ -171,6 +187,12 @@ class Network:
             return None
         return block.analysed[reference.analysis] if reference.analysis else block.solid
 
+    def has(self, reference: Reference) -> bool:
+        """Return whether a name refers to a value of the design: a number, an array or a choice."""
+        block = self.blocks.get(reference.block)
+        is_declared = block is not None and _declared(block, reference) is not None
+        return is_declared or self.node(reference) is not None
+
     def names(self) -> list[str]:
         """Return every name that a relation may use, for error messages."""
         inside = (f"{b.name}.{n}" for b in self.blocks.values() for n in (*b.cls.inputs, *b.cls.formulas))
@@ -182,8 +204,13 @@ class Network:
 
     @cached_property
     def used(self) -> Mapping[str, tuple[Reference, ...]]:
-        """Return the references to each block in relations, iterations and criteria, ordered by name."""
-        names = {str(reference): reference for reference in self.assumed}
+        """Return the references to each block in relations, iterations, criteria and the table of results.
+
+        They are ordered by name. A measure of a solid in the table is read from its build, if there is one.
+        """
+        shown = (column.reference for column in self.columns)
+        columns = (one for one in shown if one.analysis or not self._is_model(one.block))
+        names = {str(reference): reference for reference in (*self.assumed, *columns)}
         for cell in self.cells():
             names.update(cell.uses)
         for demand in self.demands.values():
@@ -193,8 +220,12 @@ class Network:
             blocks.setdefault(names[name].block, []).append(names[name])
         return {block: tuple(references) for block, references in blocks.items()}
 
+    def _is_model(self, name: str) -> bool:
+        block = self.blocks.get(name)
+        return block is not None and block.is_model
+
     def computed(self, step: Block) -> tuple[str, ...] | None:
-        """Return the outputs that a step computes: all (None), or the requested and the used outputs."""
+        """Return the outputs that a step computes: all (None), or those that are requested or used."""
         if step.outputs is None:
             return None
         linked = (reference.member for reference in self.used.get(step.name, ()))
@@ -210,7 +241,7 @@ class Network:
         return declared.meaning.unit if declared else measured_unit(reference)
 
     def accepted(self, reference: Reference) -> str:
-        """Return the unit that determines which units a user may type for a name inside a block."""
+        """Return the unit that determines in which units a user may type a value for a name in a block."""
         declared = _declared(self.blocks[reference.block], reference)
         return declared.meaning.accepted if declared else measured_unit(reference)
 
@@ -252,7 +283,7 @@ class Subject:
 
     @cached_property
     def references(self) -> Mapping[str, Reference]:
-        """Return the values that the criterion uses, without limits that no relation sets."""
+        """Return the values that the criterion uses; of its limits, only those that relations set."""
         if self.block is None:
             return self.demand.uses if self.demand else {}
         limits = self.criterion.limits_by_name
@@ -261,12 +292,12 @@ class Subject:
 
     @cached_property
     def instead(self) -> tuple[tuple[MissingValue, Subject], ...]:
-        """Return the comparisons to judge if a value is missing."""
+        """Return the comparisons that are judged instead of this one if a value is missing."""
         every = self.criterion.absent.values()
         return tuple((one, Subject(one.instead, self.block, None)) for one in every if one.instead)
 
     def is_due(self, graph: Graph) -> bool:
-        """Return whether the criterion can be judged with the outputs that the design computes."""
+        """Return whether the outputs that the design computes suffice to judge the criterion."""
         if self.block is None or self.block.is_model:
             return True
         computed = graph.computed(self.block)
@@ -275,7 +306,7 @@ class Subject:
 
 
 def subjects(graph: Graph) -> dict[str, Subject]:
-    """Return all criteria by name; the design's changes to a template's criterion are attached to it."""
+    """Return all criteria by name; those of templates include the design's changes."""
     by_name: dict[str, Subject] = {}
     for block in graph.blocks.values():
         for criterion in block.cls.declared_criteria:
@@ -302,7 +333,7 @@ def read_demands(document: Document, blocks: Mapping[str, Block]) -> tuple[dict[
 
 
 def _is_unread(name: str, document: Document, blocks: Mapping[str, Block]) -> bool:
-    """Return whether a criterion belongs to a step with an unknown template, which is reported separately."""
+    """Return whether a criterion belongs to a step with an unknown template, which has its own fault."""
     criterion = Reference.parse(name)
     is_of_step = criterion.output is not None and criterion.block in document.steps
     return is_of_step and criterion.block not in blocks
@@ -344,7 +375,7 @@ def _uses(require: str | None) -> dict[str, Reference]:
 def unknown_names_in(network: Network, unread: Set[str] = frozenset()) -> list[Fault]:
     """Return a fault for every name in a criterion of the design that does not refer to a number.
 
-    `unread` are blocks with an unknown template, which are reported separately.
+    `unread` are blocks with an unknown template, which have their own faults.
     """
     unknown = [
         (demand.name, used)
@@ -374,7 +405,7 @@ def checked_demands(network: Network, kinds: Mapping[str, Kind]) -> tuple[dict[s
 
 
 def _is_value(network: Network, reference: Reference) -> bool:
-    """Return whether a name refers to a number, rather than a word or a table."""
+    """Return whether a name refers to a number rather than to a word or a table."""
     if reference in network.assumed:
         return True
     if network.node(reference) is None or is_table(reference):
@@ -407,5 +438,5 @@ def _meaning(network: Network, kinds: Mapping[str, Kind], name: str, reference: 
 
 
 def fault_of(name: str, error: FaultyText) -> Fault:
-    """Return an error in a criterion as a fault with its place in the document."""
+    """Return an error in a criterion as a fault, with its place in the document."""
     return error.fault(f"criteria.{name}")

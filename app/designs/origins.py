@@ -34,7 +34,7 @@ def literals_behind(calculation: Calculation, starts: Iterable[Reference]) -> li
 
 
 def _inputs(graph: Graph, reference: Reference) -> list[Reference]:
-    """Return the cells of a block on which its input or output depends; all for a measurement."""
+    """Return the cells on which an input or output of a block depends; all cells for a measurement."""
     block = graph.blocks[reference.block]
     if not is_member(graph, reference):
         return [cell.reference for cell in block.cells.values()]

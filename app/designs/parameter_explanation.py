@@ -8,6 +8,7 @@ from app.calculations import json_values
 from app.designs.analyses import measured_unit
 from app.designs.engine.calculation import Calculation
 from app.designs.network import Block, Cell, Solid, SolidAnalysis
+from app.designs.roundings import rounded_value
 from app.plain import JsonObject
 from app.reference import Reference
 from templates.core.errors import FaultyText
@@ -23,7 +24,7 @@ DEEPEST = 50  # links; many JSON readers, and this program's writer, refuse deep
 def explain(calculation: Calculation, parameter: str) -> JsonObject:
     """Return the explanation of a model parameter as nested `because`; a repeated part is only named.
 
-    Chains are followed up to 50 links; values marked `deeper` are not explained further.
+    Chains are followed up to 50 links; values beyond are marked `deeper` and not explained further.
     """
     return Explainer(calculation).of(Reference.parse(parameter))
 
@@ -34,7 +35,10 @@ def model_parameters(calculation: Calculation) -> list[str]:
 
 
 def full_name(calculation: Calculation, name: str) -> str:
-    """Return a parameter's name with its model; in a design with one model, `inner_diameter` is enough."""
+    """Return the name of a parameter with that of its model.
+
+    In a design with one model, the name of the parameter alone, such as `inner_diameter`, is enough.
+    """
     models = _models(calculation)
     return f"{models[0].name}.{name}" if len(models) == 1 and name in models[0].cls.inputs else name
 
@@ -79,7 +83,8 @@ class Explainer:
         if not cell.relations:
             return {"kind": "given", "typed": cell.raw, "because": []}
         because = [self.of(used) for used in (*cell.uses.values(), *cell.tests.values())]
-        return {"kind": "relation", "relation": cell.raw, **_on_paper(cell), "because": because}
+        rounded = {"rounded": row} if (row := rounded_value(self.calculation, cell)) else {}
+        return {"kind": "relation", "relation": cell.raw, **rounded, **_on_paper(cell), "because": because}
 
     def _declared(self, head: str, tail: str) -> JsonObject:
         cls = self.graph.blocks[head].cls
@@ -116,7 +121,7 @@ class Explainer:
 
 
 def _on_paper(cell: Cell) -> JsonObject:
-    """Return a relation as LaTeX and MathML; nothing if it is only a name."""
+    """Return a relation as LaTeX and MathML; nothing if the relation is only a name."""
     latex = relation_latex(cell.raw)
     return {"latex": latex, "mathml": mathml(latex)} if latex else {}
 
@@ -130,7 +135,7 @@ def shown(si: Value, unit_name: str) -> JsonObject:
 
 
 def _measured_by(node: Solid | SolidAnalysis) -> JsonObject:
-    """Return the origin of a value: measured on a solid, or computed by an analysis."""
+    """Return how a value was obtained: measured on a solid, or computed by an analysis."""
     if isinstance(node, Solid):
         return {"kind": "measured"}
     return {"kind": "analysis", "analysis": node.model.analyses[node.kind].shown()}

@@ -49,7 +49,7 @@ class DesignQuestion:
 def in_a_process(
     name: str, answer: type[A], answered: Callable[[DesignTask, int, str], A]
 ) -> Kind[DesignQuestion, A]:
-    """Return a kind of request that is answered as a whole in the process pool.
+    """Return a kind of request that the process pool answers as a whole.
 
     `answered` takes a task, a revision number and a body [JSON text], and returns an answer in SI units.
     """
@@ -97,8 +97,8 @@ R = TypeVar("R", bound=AboutRevision)
 def settled(asked: R, database: Database, catalogues: Catalogues) -> tuple[R, Iterable[str]]:
     """Return a request with its revision number, and the data that determine the answer.
 
-    These are the digests of the versions that the revision uses, and the number of the design's newest event,
-    which changes when a solid is built.
+    The data are the digests of the versions that the revision uses, and the number of the design's newest
+    event, which changes when a solid is built.
 
     Raises
     ------
@@ -118,9 +118,9 @@ def settled(asked: R, database: Database, catalogues: Catalogues) -> tuple[R, It
 def calculated_revision(
     asked: AboutRevision, database: Database, catalogues: Catalogues
 ) -> tuple[RevisionRow, Document, Calculation]:
-    """Return the revision that a request names, by default the newest, with its document and its calculation.
+    """Return the revision that a request names, by default the newest, with document and calculation.
 
-    Iterations have their final values. Faults of values are left in the calculation.
+    Iterations have their final values. The calculation keeps faults of values.
 
     Raises
     ------
@@ -141,7 +141,7 @@ def calculated_revision(
 
 
 def _digests(catalogue: Catalogue[T], versions: Iterable[tuple[str, object]]) -> Iterator[str]:
-    """Yield the digest of each version; for a version that no longer exists, a placeholder."""
+    """Yield the digest of each version, or a placeholder for a version that no longer exists."""
     for id, version in versions:
         assert isinstance(version, int), "a revision pins every version"
         try:

@@ -15,6 +15,7 @@ from app.designs.engine.calculation import Calculation
 from app.designs.errors import NotConverged
 from app.designs.graph import Graph, build_graph, raise_if, starts
 from app.designs.results import Outcome
+from app.designs.roundings import between, in_words
 from app.designs.service import REGENERATE, CalculationCache, DocumentCalculation
 from app.designs.variants.checks import row_faults
 from app.designs.variants.solids import Describe, VariantSolids, plain_problem
@@ -83,7 +84,7 @@ class Regeneration:
                 calculation, rounds = self._settled(prepared, context)
                 outcomes = self._variants(prepared.document, calculation, context)
         except FAILURES as error:
-            raise JobFailed(error) from error
+            raise JobFailed(self._named_by_change(error, id, number)) from error
         stored = results.stored(calculation, rounds, outcomes)
         models = results.models(calculation, outcomes)
 
@@ -92,6 +93,26 @@ class Regeneration:
             return f"/api/v1/designs/{id}/revisions/{number}"
 
         return completion
+
+    def _named_by_change(self, error: Exception, id: str, number: int) -> Exception:
+        """Return an interference with the parameters that changed since the last good model, if there is one.
+
+        Parts that did not interfere before do so because of these. Defaults that follow from a changed
+        parameter are not named beside it.
+        """
+        if not isinstance(error, GeometryError) or error.code != "interference":
+            return error
+        model = error.parameters[0].partition(".")[0]
+        with self.database.read() as session:
+            every = repository.changed_since_good(session, id, number)
+            document = Document.model_validate(repository.document(session, id, number))
+        changed = [name for name in every if name.startswith(f"{model}.")]
+        if not changed or {*error.parameters} <= {*changed}:
+            return error
+        typed = {f"{model}.{name}" for name in document.models[model].parameters}
+        changed = [name for name in changed if name in typed] or changed
+        detail = f"{error.detail}. Changed since the last good model: {', '.join(changed)}"
+        return GeometryError(error.code, detail, changed)
 
     def failed(self, session: Session, job: Job, problem: JsonObject) -> None:
         """Record in the revision why its regeneration failed.
@@ -105,7 +126,7 @@ class Regeneration:
             repository.fail(session, job.design, job.revision, {**problem, "changed": changed})
 
     def _prepared(self, plain: Mapping[str, Json]) -> DocumentCalculation:
-        """Return a revision's document and its calculation, either cached by the save or repeated."""
+        """Return a revision's document and its calculation, either from the cache of the save or repeated."""
         if prepared := self.calculation_cache.find(plain):
             return prepared
         document = Document.model_validate(plain)
@@ -119,7 +140,7 @@ class Regeneration:
     def _settled(
         self, prepared: DocumentCalculation, context: JobContext
     ) -> tuple[Calculation, list[JsonObject]]:
-        """Return the calculation with all solids built and all iterations converged, and their rounds."""
+        """Return the calculation with all solids built and iterations converged, and the rounds used."""
         document, calculation = prepared
         rounds = list[JsonObject]()
         while True:
@@ -136,7 +157,8 @@ class Regeneration:
             for iteration in unsettled:
                 done_before = [done for done in rounds if done["through"] == iteration.through]
                 if len(done_before) >= iteration.limit:
-                    raise NotConverged(iteration.through, iteration.tolerance, done_before)
+                    rounded = _rounded_in_the_loop(calculation.graph, Reference.parse(iteration.through))
+                    raise NotConverged(iteration.through, iteration.tolerance, done_before, rounded)
             calculation = self._calculated(calculation.graph, measured)
 
     def _variants(self, document: Document, base: Calculation, context: JobContext) -> list[Outcome]:
@@ -170,7 +192,7 @@ class Regeneration:
             calculation = resume(calculation, *self._solids)
 
     def _analysed(self, calculation: Calculation, context: JobContext) -> bool:
-        """Analyse every solid that needs it; return whether any did."""
+        """Analyse every solid that needs it; return whether there was any."""
         waiting = calculation.waiting()
         for node in waiting:
             name, kind = node.model.name, node.kind
@@ -186,6 +208,12 @@ class Regeneration:
 def _lane(job: Job) -> Lane:
     """Return the lane of a job, so that a quick change never waits for long calculations."""
     return "answers" if job.kind == REGENERATE else "jobs"
+
+
+def _rounded_in_the_loop(graph: Graph, through: Reference) -> str:
+    """Return the rounded values between a measurement and the parameters of its model; empty if none is."""
+    inside = [cell.reference for cell in graph.cells() if cell.reference.block == through.block]
+    return in_words(between(graph, [through], inside).get(through, []))
 
 
 def _measure(calculation: Calculation, iteration: Iteration) -> float:

@@ -66,5 +66,5 @@ def state_of(session: Session, row: RevisionRow) -> Step | None:
 
 
 def last_of(steps: Collection[str]) -> Step | None:
-    """Return the latest of some approval steps; None if there are none."""
+    """Return the latest of several approval steps; None if there are none."""
     return next((step for step in reversed(ORDER) if step in steps), None)

@@ -47,12 +47,12 @@ class StoredRevision:
 
 
 def design(session: Session, id: str) -> DesignRow:
-    """Return a design that is not deleted.
+    """Return a design, unless it is deleted.
 
     Raises
     ------
     NotFound
-        If there is none.
+        If there is no such design, or it is deleted.
     """
     row = session.get(DesignRow, id)
     if row is None or row.deleted:
@@ -61,12 +61,12 @@ def design(session: Session, id: str) -> DesignRow:
 
 
 def locked(session: Session, id: str) -> DesignRow:
-    """Return a design that is not deleted, read anew and locked until the end of the transaction.
+    """Return a design, read anew and locked until the end of the transaction, unless it is deleted.
 
     Raises
     ------
     NotFound
-        If there is none.
+        If there is no such design, or it is deleted.
     """
     of_id = select(DesignRow).where(DesignRow.id == id, DesignRow.deleted.is_(None)).with_for_update()
     row = session.scalar(of_id.execution_options(populate_existing=True))
@@ -76,7 +76,7 @@ def locked(session: Session, id: str) -> DesignRow:
 
 
 def heads(session: Session, rows: Sequence[DesignRow]) -> dict[str, RevisionRow]:
-    """Return the newest revision of each design by the design's id, without results."""
+    """Return the newest revision of each design, without results, by the design's id."""
     places = [(row.id, row.head) for row in rows]
     query = select(RevisionRow).where(tuple_(RevisionRow.design_id, RevisionRow.number).in_(places))
     return {row.design_id: row for row in session.scalars(query.options(_LEAN))}
@@ -97,12 +97,12 @@ def revision(session: Session, id: str, number: int) -> RevisionRow:
 
 
 def lean(session: Session, id: str, number: int) -> RevisionRow:
-    """Return a revision whose results are loaded when they are first read.
+    """Return a revision whose results are loaded only when they are first read.
 
     Raises
     ------
     NotFound
-        If there is none.
+        If there is no such revision.
     """
     row = session.scalar(_LEAN_REVISION, {"of": id, "at": number})
     if row is None:
@@ -116,7 +116,7 @@ def head(session: Session, id: str) -> RevisionRow:
 
 
 def lean_head(session: Session, id: str) -> RevisionRow:
-    """Return the newest revision of a design, with results as in `lean`."""
+    """Return the newest revision of a design; its results are loaded only when they are first read."""
     return lean(session, id, design(session, id).head)
 
 
@@ -176,12 +176,12 @@ def _no_revision(id: str, number: int) -> NotFound:
 
 
 def of_ids(session: Session, ids: Collection[str]) -> list[DesignRow]:
-    """Return the designs with these ids that are not deleted."""
+    """Return the designs with these ids, except deleted ones."""
     return list(session.scalars(select(DesignRow).where(DesignRow.id.in_(ids), DesignRow.deleted.is_(None))))
 
 
 def newest_number(session: Session, id: str) -> int:
-    """Return the number of a design's newest revision, whether it is deleted or not."""
+    """Return the number of a design's newest revision, even if the design is deleted."""
     row = session.get(DesignRow, id)
     assert row is not None, "a revision has its design"
     return row.head
@@ -218,7 +218,8 @@ def create(session: Session, name: str, written: StoredRevision, at: str | None 
 def append(session: Session, id: str, base: int, written: StoredRevision, at: str | None = None) -> int:
     """Append a revision after revision `base` at time `at`, or now; return its number.
 
-    The row of the design is locked: if several servers append to the same revision, one of them succeeds.
+    The row of the design is locked: if several servers append to the same revision, only one of them
+    succeeds.
 
     Raises
     ------
@@ -269,7 +270,7 @@ def _model_row(id: str, number: int, state: ModelState) -> Values:
 
 
 def attach(session: Session, id: str, number: int, results: JsonObject, models: Sequence[ModelState]) -> None:
-    """Store the results of a regeneration in its revision, which becomes current."""
+    """Store the results of a regeneration in its revision, whose state becomes `current`."""
     statements.ATTACHED.run(session, {"of": id, "at": number, "computed": results})
     for state in models:
         upsert_values(session, statements.MODELS, _model_row(id, number, state))
@@ -298,12 +299,12 @@ def delete(session: Session, id: str) -> None:
 
 
 def newest_good(session: Session, id: str, model: str, until: int) -> RevisionModelRow | None:
-    """Return the newest revision, up to a given one, in which the named model was built and accepted."""
+    """Return the newest revision, up to a given one, for which the named model was built and accepted."""
     return _model(statements.GOOD.run(session, {"of": id, "model": model, "until": until}))
 
 
 def built_model(session: Session, id: str, number: int, model: str) -> RevisionModelRow | None:
-    """Return a model of a revision if it was built, else None."""
+    """Return a model of a revision if it was built; otherwise None."""
     return _model(statements.BUILT.run(session, {"of": id, "model": model, "at": number}))
 
 
@@ -313,7 +314,7 @@ def _model(rows: Sequence[Row]) -> RevisionModelRow | None:
 
 
 def changed_since_good(session: Session, id: str, number: int) -> list[str]:
-    """Return the model parameters of a revision that differ from those of the last good model."""
+    """Return the model parameters of a revision that differ from those of the last valid model."""
     changed: list[str] = []
     for model in revision(session, id, number).models:
         good = newest_good(session, id, model.name, number - 1)

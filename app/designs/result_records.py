@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from threading import Lock
 
@@ -17,7 +17,8 @@ from pydantic import TypeAdapter
 from sqlalchemy import Text, bindparam, select, type_coerce
 from sqlalchemy.orm import Session
 
-from app.designs.schemas.designs import RevisionStep, Round
+from app.designs.schemas.designs import RevisionStep, Round, RoundedValue
+from app.plain import JsonObject
 from app.schemas.criteria import Criterion, Verdict
 from app.solids.schemas.analyses import ModelAnalysis
 from app.storage.tables import JsonText, RevisionRow, canonical_json
@@ -28,6 +29,7 @@ _TEXT = select(type_coerce(RevisionRow.results, Text)).where(
 )
 _JSON = JsonText()
 _ROUNDS = TypeAdapter(list[Round])
+_ROUNDED = TypeAdapter(dict[str | None, list[RoundedValue]])
 _ANALYSES = TypeAdapter(dict[str, dict[str, ModelAnalysis]])
 _JUDGED: Mapping[str, TypeAdapter[list[Criterion] | Verdict | None]] = {
     "criteria": TypeAdapter(list[Criterion] | None),
@@ -44,6 +46,11 @@ class Results:
     judged: Mapping[str, list[Criterion] | Verdict | None]  # the stored members `criteria` and `verdict`
     iterations: list[Round]
     analyses: Mapping[str, dict[str, ModelAnalysis]]  # by model and kind
+    governing: str = ""  # the variant that governs; empty if the design itself does
+    governing_steps: Mapping[str, RevisionStep] = field(default_factory=dict)  # where they differ
+    rounded: Mapping[str | None, list[RoundedValue]] = field(
+        default_factory=dict
+    )  # by variant; None is the design itself
 
     @cached_property
     def digest(self) -> str:
@@ -74,14 +81,24 @@ def _read(text: str) -> Results:
     plain = _JSON.process_result_value(text)
     if not plain:
         return Results(text, {}, {}, [], {})
+    governing = plain.get("governing", {"variant": "", "steps": {}})
     return Results(
         text=text,
-        steps={
-            name: RevisionStep.model_validate(step)
-            for name, step in plain["steps"].items()
-            if "outputs" in step
-        },
+        steps=_steps(plain["steps"]),
         judged={name: kind.validate_python(plain[name]) for name, kind in _JUDGED.items() if name in plain},
         iterations=_ROUNDS.validate_python(plain["iterations"]),
+        rounded=_ROUNDED.validate_python(
+            {
+                variant: one["rounded"]
+                for variant, one in {**plain.get("variants", {}), None: plain}.items()
+                if "rounded" in one
+            }
+        ),
         analyses=_ANALYSES.validate_python(plain.get("analyses", {})),
+        governing=governing["variant"],
+        governing_steps=_steps(governing["steps"]),
     )
+
+
+def _steps(plain: JsonObject) -> dict[str, RevisionStep]:
+    return {name: RevisionStep.model_validate(step) for name, step in plain.items() if "outputs" in step}

@@ -14,21 +14,23 @@ from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import judged
 from app.designs.network import Block
+from app.designs.result_cells import cells
+from app.designs.roundings import ROUNDED, RoundedValue, as_member, rounded
 from app.designs.variants.names import BASE
-from app.designs.variants.verdict import merged
+from app.designs.variants.verdict import VARIANT, merged
 from app.designs.worksheet import remember
 from app.plain import Json, JsonObject, Raw
 from app.pool.cost import EXPENSIVE
 from app.solids.analysis_views import in_design
 from cad.model import CadModel
-from cad.regenerate import as_quantities, build_key
+from cad.regenerate import as_typed, build_key
 from templates.core.criteria.judgement import Judgement
 from templates.core.criteria.summary import worst_first
 from templates.core.errors import Fault
 from templates.core.language.criteria import warned
 from templates.core.language.record import record
 
-VARIANTS = "variants"
+VARIANTS, TABLE, GOVERNING = "variants", "table", "governing"
 
 
 @dataclass(frozen=True)
@@ -47,19 +49,40 @@ class ModelState:
 def stored(
     calculation: Calculation, rounds: list[JsonObject], outcomes: Sequence[Outcome] = ()
 ) -> JsonObject:
-    """Return what a revision stores of a calculation and its variants, apart from the models."""
+    """Return the data that a revision stores of a calculation and its variants, apart from the models."""
     own = judged(calculation)
     criteria = merged(own, {one.name: one.judgements for one in outcomes}) if outcomes else own
     results = {
+        **as_member(calculation),
         "steps": steps(calculation, criteria),
         "iterations": rounds,
         "analyses": analyses(calculation),
         **rendered(criteria),
     }
     if outcomes:
-        base = _variant({}, own, single_outputs(calculation), {}, None)
+        results[TABLE] = {BASE: cells(calculation)} | {
+            outcome.name: cells(outcome.calculation) for outcome in outcomes if outcome.calculation
+        }
+        base = _variant({}, own, single_outputs(calculation), {}, None, rounded(calculation))
         results[VARIANTS] = {BASE: base, **{outcome.name: _outcome(outcome) for outcome in outcomes}}
+        results |= _governing(criteria, outcomes, results["steps"])
     return results
+
+
+def _governing(
+    criteria: Sequence[Judgement], outcomes: Sequence[Outcome], own: Mapping[str, object]
+) -> JsonObject:
+    """Return the steps of the governing variant that differ from the design's own, for its report.
+
+    Return an empty object if the design itself governs.
+    """
+    first = next((one for one in criteria if one.verdict != "not_checked"), None)
+    name = next((place.value for place in first.where if place.name == VARIANT), BASE) if first else BASE
+    outcome = next((one for one in outcomes if one.name == name and one.calculation), None)
+    if outcome is None or outcome.calculation is None:
+        return {}
+    each = steps(outcome.calculation, worst_first(outcome.judgements))
+    return {GOVERNING: {"variant": name, "steps": {n: one for n, one in each.items() if one != own.get(n)}}}
 
 
 def analyses(calculation: Calculation) -> dict[str, JsonObject]:
@@ -79,9 +102,10 @@ def analyses(calculation: Calculation) -> dict[str, JsonObject]:
 
 
 def steps(calculation: Calculation, criteria: Sequence[Judgement]) -> dict[str, JsonObject]:
-    """Return every step: its evaluation, or that it waits for a solid or a job.
+    """Return the evaluation of every step, or a note that it waits for a solid or a job.
 
-    The criteria of steps are listed with those of the design; a step stores only the warnings of unmet ones.
+    The criteria of steps are listed with those of the design; a step stores only the warnings of criteria not
+    met.
     """
     return {
         name: _step(calculation, block, criteria)
@@ -106,7 +130,7 @@ def _step(calculation: Calculation, block: Block, criteria: Sequence[Judgement])
 
 
 def _own(block: Block, criteria: Sequence[Judgement]) -> list[Judgement]:
-    """Return the judgements of a step's own criteria, under their names in the template."""
+    """Return the judgements of a step's own criteria under their names in the template."""
     prefix = f"{block.name}."
     return [
         replace(judgement, name=judgement.name.removeprefix(prefix))
@@ -128,7 +152,7 @@ def _model(calculation: Calculation, block: Block) -> ModelState:
         name=block.name,
         id=block.cls.id,
         version=block.cls.version,
-        parameters=as_quantities(shape) if shape else {},
+        parameters=as_typed(shape) if shape else {},
         relations={n: cell.raw for n, cell in block.cells.items() if cell.relations},
         missing=tuple(calculation.missing.get(block.name, ())),
         build=build_key(shape) if shape else None,
@@ -136,7 +160,14 @@ def _model(calculation: Calculation, block: Block) -> ModelState:
 
 
 def _outcome(outcome: Outcome) -> JsonObject:
-    return _variant(outcome.values, outcome.judgements, outcome.outputs, outcome.failures, outcome.problem)
+    return _variant(
+        outcome.values,
+        outcome.judgements,
+        outcome.outputs,
+        outcome.failures,
+        outcome.problem,
+        rounded(outcome.calculation) if outcome.calculation else [],
+    )
 
 
 def _variant(
@@ -145,6 +176,7 @@ def _variant(
     outputs: Mapping[str, JsonObject],
     failures: Mapping[str, JsonObject],
     problem: JsonObject | None,
+    chosen: Sequence[RoundedValue],
 ) -> JsonObject:
     """Return one variant in the form that a revision stores, without empty members."""
     parts: JsonObject = {
@@ -152,6 +184,7 @@ def _variant(
         "outputs": dict(outputs),
         "failures": dict(failures),
         "problem": problem,
+        ROUNDED: list(chosen),
     }
     return {**{name: part for name, part in parts.items() if part}, **rendered(worst_first(judgements))}
 

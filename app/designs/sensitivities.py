@@ -2,7 +2,7 @@
 
 The slopes are central differences at the design point: 1 + 2 n rows in one array call, at the levels that the
 design used. A quantity that acts through a solid gets a reason instead of a slope, because each of its values
-needs another solid.
+needs another solid; so does one that acts through a rounded value, because the result changes in steps.
 """
 
 from __future__ import annotations
@@ -21,8 +21,9 @@ from app.designs.engine.calculation import Calculation
 from app.designs.engine.design_engine import DesignEngine, Table
 from app.designs.engine.relations import MOST_OPERATIONS
 from app.designs.engine.row_design import MOST_VALUES, Targets
-from app.designs.network import Subject
+from app.designs.network import Cell, Subject
 from app.designs.origins import literals_behind, measures_behind, through_solids
+from app.designs.roundings import between, in_words
 from app.designs.schemas.designs import Sensitivity
 from app.designs.slopes import Local, Slopes, slope_in, slopes_at
 from app.pool.cost import EXPENSIVE
@@ -51,12 +52,12 @@ class SensitivityQuestion:
 
     @property
     def values(self) -> list[Reference]:
-        """Return the name as a reference if it is a value; else nothing."""
+        """Return the name as a reference if it is a value; otherwise nothing."""
         return [] if self.subject else [Reference.parse(self.name)]
 
     @property
     def criteria(self) -> list[str]:
-        """Return the name if it is a criterion; else nothing."""
+        """Return the name if it is a criterion; otherwise nothing."""
         return [self.name] if self.subject else []
 
     @property
@@ -91,11 +92,14 @@ def sensitivities(
     wanted = asked.wanted
     behind = literals_behind(calculation, [*wanted.references, *wanted.inside])
     solids = through_solids(calculation.graph, wanted)
-    apart = {*solids, *asked.values}
+    places_behind = [cell.reference for cell in behind if cell.reference not in solids]
+    steps = between(calculation.graph, places_behind, [*wanted.references, *wanted.inside])
+    apart = {*solids, *steps, *asked.values}
     places = [cell.reference for cell in behind if cell.reference not in apart]
     through = [
         _of_solid(cell.name, solids[cell.reference].name) for cell in behind if cell.reference in solids
     ]
+    through += [_of_rounding(str(place), cells) for place, cells in steps.items()]
     try:
         surroundings = DifferenceRows(document, calculation, catalogues, asked, places[:MOST_VARIED])
         items = sorted(surroundings.items(), key=_rank) if places else []
@@ -110,6 +114,11 @@ def _of_solid(place: str, model: str) -> Sensitivity:
     return Sensitivity(name=place, reason=reason)
 
 
+def _of_rounding(place: str, cells: Sequence[Cell]) -> Sensitivity:
+    reason = f"it acts through {in_words(cells)}, so the value changes in steps and has no slope"
+    return Sensitivity(name=place, reason=reason)
+
+
 def _rank(item: Sensitivity) -> tuple[int, float]:
     """Return a sort key: largest elasticity first, then slopes without an elasticity, then missing slopes."""
     if item.elasticity is not None:
@@ -118,7 +127,7 @@ def _rank(item: Sensitivity) -> tuple[int, float]:
 
 
 def _left_out(places: int, through: int, shown: int) -> str | None:
-    """Return a sentence that the list of quantities is incomplete; None if it is complete."""
+    """Return a sentence saying that the list of quantities is incomplete; None if it is complete."""
     if places > MOST_VARIED:
         return (
             f"only the first {MOST_VARIED} of {places + through} places were varied; {MOST_SHOWN} are listed"
@@ -182,20 +191,20 @@ class DifferenceRows:
             )
 
     def _at(self) -> str:
-        """Return the levels of the calculated steps as words in brackets, for a message."""
+        """Return the levels of the calculated steps in words, in brackets, for a message."""
         steps = [step.name for step in self._engine.design.steps(self.asked.wanted)]
         used = [f"{name} at {self._levels[name]}" for name in steps if name in self._levels]
         return f" ({', '.join(used)})" if used else ""
 
     def _check(self, value: Array, table: Table) -> None:
-        """Raise InvalidInputs if the value cannot have a slope."""
+        """Raise InvalidInputs if a slope of the value is not defined."""
         if value.ndim > 1:
             raise self._refused("shape", f"{self.asked.name} is a list; sensitivities need a single number")
         if not math.isfinite(value[0]):
             raise self._refused("no_value", self._missing(table))
 
     def _missing(self, table: Table) -> str:
-        """Return why the design has no value at the design point."""
+        """Return the reason why the value is missing at the design point."""
         waiting = self._engine.design.needs(self.asked.wanted).waiting
         if tables := sorted(str(reference) for reference in waiting if is_table(reference)):
             what = f"{listed(tables)}, a table or a list"
@@ -245,7 +254,7 @@ class DifferenceRows:
 
 
 def _one_sided(below: int, above: int, value: Array, table: Table) -> str | None:
-    """Return why a slope is missing or one-sided; None if it is central."""
+    """Return the reason why a slope is missing or one-sided; None if it is central."""
     missing = [row for row in (below, above) if not math.isfinite(value[row])]
     if not missing:
         return None

@@ -40,7 +40,7 @@ def _within(pairs: Mapping[str, str], step: str) -> dict[str, str]:
 
 
 def _renamed(values: Mapping[str, Raw], pairs: Mapping[str, str]) -> dict[str, Raw]:
-    """Return values with sizes under their declared names, unless these are given as well."""
+    """Return values with each size under its declared name, unless both names are given."""
     changed = {}
     for name, raw in values.items():
         declared = pairs.get(name)
@@ -53,7 +53,7 @@ def _renamed(values: Mapping[str, Raw], pairs: Mapping[str, str]) -> dict[str, R
 
 
 def _multiple(raw: Raw, declared: str) -> Raw | None:
-    """Return a size converted to the declared one; None if it is not a length, which is refused later."""
+    """Convert a size to the declared one; return None if it is not a length, which is refused later."""
     factor = factor_of(declared.rpartition(".")[2])
     if is_relation(raw):
         return f"= {factor:g} * ({str(raw).strip().removeprefix('=').strip()})"

@@ -34,7 +34,7 @@ class Local:
         return 1 + 2 * len(self.at)
 
     def rows(self, first: int, last: int) -> Array:
-        """Return rows `first` to `last`, excluding `last`."""
+        """Return rows `first` to `last`; `last` is excluded."""
         moved = np.diag(self.steps)
         with np.errstate(over="ignore"):
             return np.asarray(self.at + np.vstack([np.zeros_like(self.at), -moved, moved]))[first:last]

@@ -62,7 +62,7 @@ class DesignCurve(SampledCurve):
 
     @property
     def rows(self) -> int:
-        """Return the number of samples in one call at these levels."""
+        """Return the number of samples that one call can calculate at these levels."""
         return self.engine.rows_at_once([self.target], self.levels)
 
     def at_level(self, level: str) -> DesignCurve:
@@ -74,7 +74,7 @@ class DesignCurve(SampledCurve):
         return self.levels == other.levels
 
     def level_at(self, x: float) -> str | None:
-        """Return the level at one value.
+        """Return the level at one value of the unknown.
 
         Raises
         ------
@@ -135,7 +135,7 @@ def _levels(
 ) -> tuple[dict[str, str | None], dict[str, str | None]]:
     """Return the levels for the curve, and the levels for its solutions.
 
-    No level for the curve is finer than the one for the solutions.
+    No level for the curve is finer than the corresponding level for the solutions.
     """
     rows, outputs = {wanted.unknown: evenly(*wanted.between, PROBED)}, [wanted.target]
     cheap = engine.levels_for(rows, outputs, max(EXPLORED, wanted.tolerance or 0.0))
@@ -154,5 +154,5 @@ def _coarser(engine: DesignEngine, step: str, one: str | None, other: str | None
 
 
 def _meaning(engine: DesignEngine, reference: Reference) -> Meaning:
-    """Return the name of a value for messages, with its declared unit."""
+    """Return the name of a value for messages, and its declared unit."""
     return Meaning(words=str(reference), unit=engine.unit(reference), name=str(reference))

@@ -8,7 +8,7 @@ from sqlalchemy.orm import Session
 
 from app.designs import releases, repository, tolerances
 from app.designs.result_records import results_of
-from app.designs.schemas.designs import Design, DesignSummary, ModelMeasurements, Revision
+from app.designs.schemas.designs import Design, DesignResults, DesignSummary, ModelMeasurements, Revision
 from app.designs.variants.names import natural
 from app.identity.rows import names
 from app.identity.schemas.principals import Author
@@ -58,7 +58,7 @@ def _design(
             "steps": document["steps"],
             "models": document["models"],
             "iterations": document["iterations"],
-            **{name: document[name] for name in ("criteria",) if name in document},
+            **{name: document[name] for name in ("criteria", "table") if name in document},
             **_variants(document),
             "problem": problem,
             "created": created,
@@ -68,7 +68,7 @@ def _design(
 
 
 def _variants(document: JsonObject) -> JsonObject:
-    """Return the member `variants` of a design, in natural order of the names; empty if there are none."""
+    """Return the member `variants` of a design in natural order of the names; empty if there are none."""
     variants = document.get("variants", {})
     return {"variants": {name: variants[name] for name in sorted(variants, key=natural)}} if variants else {}
 
@@ -99,14 +99,44 @@ def revision(session: Session, row: RevisionRow) -> Revision:
             **_heading(session, row),
             "steps": {name: results.steps.get(name) or _waiting(step) for name, step in steps.items()},
             "models": {
-                model.name: {**_model(session, model), "analyses": results.analyses.get(model.name, {})}
+                model.name: {
+                    **_model(session, model, row.document),
+                    "analyses": results.analyses.get(model.name, {}),
+                }
                 for model in models
             },
             "iterations": results.iterations,
+            **({"rounded": results.rounded[None]} if None in results.rounded else {}),
             **({"warnings": unused} if (unused := tolerances.warnings(row.document)) else {}),
             **results.judged,
         }
     )
+
+
+def governing(session: Session, row: RevisionRow) -> tuple[str, Revision]:
+    """Return the variant that governs, and the revision with the steps and rounded values of this variant.
+
+    The name is empty if the design itself governs.
+    """
+    results, own = results_of(session, row), revision(session, row)
+    steps = {**own.steps, **results.governing_steps}
+    rounded = results.rounded.get(results.governing or None, [])
+    return results.governing, own.model_copy(update={"steps": steps, "rounded": rounded})
+
+
+def results(session: Session, row: RevisionRow) -> DesignResults | None:
+    """Return the single outputs and the judged criteria of a revision; None if it has no results."""
+    kept = results_of(session, row)
+    if kept.text is None:
+        return None
+    outputs = {
+        f"{step}.{name}": output
+        for step, one in kept.steps.items()
+        for name, output in one.outputs.items()
+        if not isinstance(output.value, list)
+    }
+    judged = {name: part for name, part in kept.judged.items() if part is not None}
+    return DesignResults.model_validate({"outputs": outputs, **judged})
 
 
 def summary(session: Session, row: RevisionRow) -> Revision:
@@ -130,25 +160,28 @@ def _heading(session: Session, row: RevisionRow) -> dict[str, object]:
 
 
 def _signed(session: Session, row: RevisionRow) -> dict[str, str | int]:
-    """Return the released revision that this one replaces, and the state of its approval, if any."""
+    """Return the released revision that this one replaces, and the state of its approval, if there is one."""
     said = {"supersedes": row.supersedes, "approval": releases.state_of(session, row)}
     return {name: value for name, value in said.items() if value is not None}
 
 
 def author(session: Session, id: str | None) -> Author | None:
-    """Return the author of an action with their present name; None if no author is recorded."""
+    """Return the author of an action under their present name; None if no author is recorded."""
     return None if id is None else Author(id=id, name=names(session, [id]).get(id, id))
 
 
 def _waiting(typed: JsonObject) -> JsonObject:
-    """Return a step as typed while it waits for a solid or a job."""
+    """Return a step as its user typed it, while it waits for a solid or a job."""
     template = {"id": typed["template"], "version": typed["version"]}
     empty: JsonObject = {"outputs": {}, "level": None, "error": {}, "warnings": []}
     return {"template": template, "inputs": typed["inputs"], **empty, "pending": True}
 
 
-def _model(session: Session, row: RevisionModelRow) -> JsonObject:
+def _model(session: Session, row: RevisionModelRow, document: JsonObject) -> JsonObject:
+    build = rows.build(session, row.build_key) if row.build_key else None
+    stated = tolerances.stated(row, build, document["models"][row.name]["parameters"]) if build else {}
     return {
+        **({"tolerances": stated} if stated else {}),
         "id": row.model,
         "version": row.model_version,
         "parameters": row.parameters,
@@ -185,7 +218,7 @@ def _analyses(session: Session, id: str, number: int) -> Mapping[str, dict[str, 
 
 
 def good_model(session: Session, id: str, name: str | None, number: int | None) -> RevisionModelRow:
-    """Return the model to serve: from one revision, or from the newest valid one.
+    """Return the model to serve, from the given revision or from the newest valid one.
 
     Raises
     ------

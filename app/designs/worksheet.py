@@ -36,7 +36,7 @@ def worksheet(
     only: str | None = None,
     has_formulas: bool = True,
 ) -> RevisionWorksheet:
-    """Return a revision with `formulas`, from the inputs and at the level that its job used.
+    """Return a revision with `formulas`, for the inputs and the levels that its job used.
 
     With `only` it contains only that step. Unless `has_formulas`, no formulas are written out.
 
@@ -54,6 +54,8 @@ def worksheet(
     fields = {name: getattr(revision, name) for name in revision.model_fields_set}
     if revision.criteria is not None:
         fields["criteria"] = [criterion.in_units(system) for criterion in revision.criteria]
+    if revision.rounded:
+        fields["rounded"] = [value.in_units(system) for value in revision.rounded]
     return RevisionWorksheet.model_validate({**fields, "steps": steps, "models": models})
 
 
@@ -94,8 +96,8 @@ def _calculated(
     """Return the template of a step that has results, restored from its record or recalculated.
 
     It is recalculated if the revision has no record, if the version has changed since, or if arrays are
-    requested that the record omits. It is None if the step has no results, if the calculation is deferred, or
-    if the file of the version was removed or now refuses the inputs.
+    requested, which the record omits. It is None if the step has no results, if the calculation is deferred,
+    or if the file of the version was removed or now refuses the inputs.
     """
     if not step.outputs:
         return None
@@ -146,7 +148,7 @@ def remember(answer: JsonObject, evaluation: Evaluation) -> None:
 
 
 def _formulas(template: Template, system: System, names: Collection[str]) -> list[WorkedFormula]:
-    """Return the formulas written out; cached by the template's values."""
+    """Return the written-out formulas; they are cached by the template's values."""
     key = _values_of(template)
     if key is None:
         return [WorkedFormula.model_validate(row) for row in formulas(template, system, names)]
@@ -173,7 +175,7 @@ def _values_of(template: Template) -> Hashable | None:
 
 
 def _evaluated(cls: type[Template], step: RevisionStep) -> Evaluation:
-    """Return the evaluation of a step as its job calculated it; cached, because a revision never changes."""
+    """Return a step as its job evaluated it; it is cached, because a revision never changes."""
     question = _Question.of(step)
     kept: Evaluation | None = cache.get(question.key(cls))
     if kept is None:

@@ -34,7 +34,7 @@ class _Sink:
 
 
 def archived(members: Iterable[Member]) -> Iterator[bytes]:
-    """Yield a ZIP in parts: one for every file, then its directory."""
+    """Yield a ZIP in parts: one part for each file, then the directory of the ZIP."""
     sink = _Sink()
     with zipfile.ZipFile(sink, "w", zipfile.ZIP_DEFLATED) as archive:  # type: ignore[call-overload]
         for name, read in members:

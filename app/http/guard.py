@@ -128,7 +128,7 @@ def _no_host(given: bytes) -> str:
 
 @lru_cache(maxsize=1024)  # only for short headers; errors are not cached
 def _allowed(hosts: Hosts, given: bytes, scheme: str, server: tuple[str, int | None] | None) -> Authority:
-    """Return the host that a request names, if it is one of this service."""
+    """Return the host that a request names, if it belongs to this service."""
     asked = parse(given.decode("latin-1"))
     if asked is None:
         raise BadHost(_no_host(given))

@@ -81,12 +81,12 @@ class BodyLimits:
         headers, query = scope["headers"], scope["query_string"]
         size = sum(map(len, chain.from_iterable(headers))) + len(query) + len(scope.get("raw_path") or b"")
         if size > LONGEST_HEAD:
-            most = f"at most {LONGEST_HEAD // 1024} KiB together"
-            raise HeadTooLarge(f"the address and the headers may have {most}")
+            most = f"at most {LONGEST_HEAD // 1024} KiB"
+            raise HeadTooLarge(f"the address and the headers together may have {most}")
         if len(headers) > MOST_HEADERS:
             raise HeadTooLarge(f"a request may have at most {MOST_HEADERS} headers")
         if query.count(b"&") >= MOST_FIELDS:
-            raise HeadTooLarge(f"an address may have at most {MOST_FIELDS} fields")
+            raise HeadTooLarge(f"the query of an address may have at most {MOST_FIELDS} fields")
         if not (length.isdigit() and int(length) <= self.size):
             raise self._too_large()
 

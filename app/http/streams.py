@@ -32,9 +32,9 @@ class Streams:
         """
         with self._lock:
             if self.open[client] >= self.most_of_client:
-                raise TooManyStreams(f"a client may have {self.most_of_client} streams of events open")
+                raise TooManyStreams(f"a client may have at most {self.most_of_client} event streams open")
             if self.open.total() >= self.most:
-                raise TooManyStreams(f"{self.most} streams of events are open, the maximum")
+                raise TooManyStreams(f"{self.most} event streams are open, which is the maximum")
             self.open[client] += 1
 
     def leave(self, client: str) -> None:

@@ -79,7 +79,7 @@ class Door:
         self._rate.take(guest.principal, limits.requests_per_minute)
 
     async def _guest(self, hash: str, find: Callable[[], Guest | None]) -> Guest | None:
-        """Return the guest for this hash, from the cache or from `find`.
+        """Return the guest for this hash, taken from the cache or returned by `find`.
 
         The result goes into the cache that existed before the search, so that `forget` also discards it.
         """

@@ -39,7 +39,7 @@ NAMES = tuple(field.name for field in fields(Limits))
 
 
 def limits_of(settings: Settings, own: Mapping[str, object] | None) -> Limits:
-    """Return the limits of a principal: its own values where it has them, else those of the settings."""
+    """Return the limits of a principal: its own values where it has them, otherwise those of the settings."""
     general = {
         "requests_per_minute": settings.principal_rate,
         "storage_mb": settings.principal_storage_mb,

@@ -103,7 +103,7 @@ def of_subject(session: Session, subject: str) -> PrincipalRow | None:
 
 
 def principals(session: Session, limit: int, after: str | None) -> list[PrincipalRow]:
-    """Return principals in the order of their creation, optionally only those after a given one."""
+    """Return principals in the order of their creation, optionally only those created after a given one."""
     query = select(PrincipalRow).order_by(PrincipalRow.id).limit(limit)
     return list(session.scalars(query.where(PrincipalRow.id > after) if after else query))
 

@@ -151,7 +151,9 @@ class Identity:
             _require_own(principal)
             owner = rows.principal(rows.find(session, principal))
             if len(rows.keys_of(session, principal)) >= MOST_KEYS:
-                raise TooManyKeys(f"{owner.name} has {MOST_KEYS} keys, the maximum; revoked keys count")
+                raise TooManyKeys(
+                    f"{owner.name} has {MOST_KEYS} keys, which is the maximum; revoked keys count too"
+                )
             maker = _maker(session, owner)
             row = ApiKeyRow(
                 prefix=new.prefix, hash=new.hash, principal_id=principal, name=name,
@@ -193,7 +195,7 @@ class Identity:
             return amounts, limits_of(self._settings, rows.find(session, principal).limits)
 
     def revoke(self, prefix: str, principal: str | None = None) -> list[ApiKeyRow]:
-        """Revoke a key, optionally only of one principal; an already revoked key stays unchanged.
+        """Revoke a key, optionally only if it belongs to one principal; a key revoked before stays unchanged.
 
         Keys that were created with this key are revoked too, except the key of this request, so that a user
         can change to a successor. The result lists the key first, then the others.

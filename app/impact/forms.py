@@ -50,12 +50,12 @@ def form_of(document: Document, catalogues: Catalogues) -> Form:
 
 @dataclass(frozen=True)
 class _PlaceRemoval:
-    """Replaces single quantities in a document by placeholders, and records their values."""
+    """Replaces single quantities in a document with placeholders, and records their values."""
 
     values: dict[Reference, float]
 
     def parameter(self, name: str, raw: Raw) -> Raw:
-        """Return a parameter of the design; for a single quantity, a placeholder of the same kind."""
+        """Return a parameter of the design; a single quantity becomes a placeholder of the same kind."""
         if _is_written_out(raw):
             return raw
         try:

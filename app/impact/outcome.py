@@ -23,12 +23,12 @@ class JudgedCriterion:
 
     @classmethod
     def alone(cls, judgement: Judgement) -> JudgedCriterion:
-        """Return a criterion as judged for one design calculated alone."""
+        """Return the verdict on a criterion of one design that was calculated alone."""
         return cls(judgement.verdict, judgement.margin_unit or judgement.unit, _finite(judgement.margin))
 
     @classmethod
     def in_row(cls, verdict: Verdict, criterion: Criterion, margin: float) -> JudgedCriterion:
-        """Return a criterion as judged in a row of a batch; a margin [SI] of NaN means that it is unknown."""
+        """Return the verdict on a criterion in one row of a batch; a margin [SI] of NaN is unknown."""
         scale = "K" if criterion.is_temperature else criterion.unit
         return cls(verdict, scale, _finite(margin / unit(scale).factor))
 

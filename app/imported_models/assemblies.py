@@ -138,7 +138,7 @@ def _base(base: Base | None, catalogues: Catalogues) -> type[CadModel] | None:
         raise UnreadableModel("base", f"base: {error}") from None
     if is_outside(cls):
         detail = (
-            f"base: {base.model} is no model of this program, so it cannot be the base. Name it as a "
+            f"base: {base.model} is not a model of this program, so it cannot be the base. Name it as a "
             "component: a STEP file by `model`, any other model by a design that has it"
         )
         raise UnreadableModel("base", detail)

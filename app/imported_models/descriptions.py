@@ -113,7 +113,7 @@ def described_freecad(
 def _examined(
     described: Description, id: str, drawn: ProgramResult, context: JobContext, limits: Limits | None = None
 ) -> Description:
-    """Return a description with what the examination of its solids found; raises as `examine` does."""
+    """Return a description with the results of examining its solids; raises as `examine` does."""
     context.progress(0.85, "the solids are written and read back")
     examined = context.run(examine, described.text, id, drawn, limits=limits)
     findings = (*described.findings, *examined.findings)
@@ -185,7 +185,7 @@ def _tried(
     context: JobContext,
     deadline: Deadline,
 ) -> Iterator[Parameter]:
-    """Yield each parameter with what it moves: change only this one, draw, and compare the solids."""
+    """Yield each parameter with the parts of the solid that move when only this parameter changes."""
     before = context.run(tried, base, limits=deadline.limits)
     for number, one in enumerate(parameters):
         if number >= MOST_TRIALS:
@@ -207,7 +207,7 @@ def _after_step(
     context: JobContext,
     deadline: Deadline,
 ) -> Parameter:
-    """Return a parameter with what a step up moves, or a step down where FreeCAD refuses the one up."""
+    """Return a parameter with what a step up moves, or a step down if FreeCAD refuses the step up."""
     refused = ""
     for value in (float(f"{one.value + sign * step:.12g}") for sign in (1, -1)):
         try:
@@ -228,7 +228,7 @@ def _is_size(one: Parameter) -> bool:
 
 
 def _steps(one: Parameter) -> list[float]:
-    """Return the steps of the trials of a parameter, tried until one moves something.
+    """Return the steps by which to change a parameter, one after another, until one moves something.
 
     A whole number may be a count, which moves nothing before it is one more.
     """

@@ -50,5 +50,5 @@ def find(folder: Path | None = None, python: str = "/usr/bin/python3") -> FreeCa
     if place is None:
         raise missing(f"FreeCAD is not installed ({', '.join(places)} has no FreeCAD.so)")
     if not os.access(python, os.X_OK):
-        raise missing(f"FreeCAD needs the Python {python}, which is not installed")
+        raise missing(f"FreeCAD needs the Python interpreter {python}, which is not installed")
     return FreeCad(python, place)

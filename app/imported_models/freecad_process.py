@@ -99,7 +99,7 @@ class FreeCadProcess:
     ) -> FreeCadAnswer:
         """Let FreeCAD open the file again, set some parameters and draw, within this number of seconds.
 
-        A drawing must have these ends; without them, those of the file at its own values.
+        A drawing must have the given ends, or else those of the file at its own values.
 
         Raises
         ------
@@ -178,7 +178,7 @@ class FreeCadProcess:
         if not are_sizes:
             raise EOFError
         if sum(about["sizes"]) > LARGEST_ANSWER:
-            raise GeometryError("too_large", f"the shapes have more than {LARGEST_ANSWER // 2**20} MiB")
+            raise GeometryError("too_large", f"the shapes are larger than {LARGEST_ANSWER // 2**20} MiB")
         return about, [self._read(one, end, cancelled) for one in about["sizes"]]
 
     def _read(self, size: int, end: float, cancelled: threading.Event) -> bytes:

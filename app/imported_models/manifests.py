@@ -19,7 +19,7 @@ TITLE = r"^[^\x00-\x1f\x7f]*[^\x00-\x1f\x7f .][^\x00-\x1f\x7f]*$"
 
 
 def read_manifest(kind: type[M], content: bytes, words: str) -> M:
-    """Return a manifest from its JSON; errors call it by `words`.
+    """Return a manifest from its JSON; messages use `words` as the name of the manifest.
 
     Raises
     ------

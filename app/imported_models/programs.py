@@ -84,7 +84,7 @@ class FreeCadDrawing:
 def _changed(described: Description, values: Values) -> list[Parameter]:
     """Return the parameters that differ from the file.
 
-    Setting the others again would change their last digits.
+    Setting the other parameters again would change their last digits.
     """
     return [one for one in described.parameters if values.get(one.name, one.value) != one.value]
 

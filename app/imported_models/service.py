@@ -147,6 +147,6 @@ def kind_of(content: bytes) -> Kind:
     what = "the body is empty" if not content else "it begins as no model does"
     raise UnreadableModel(
         "not_a_model",
-        f"{what}: send a .FCStd of FreeCAD, a STEP file (ISO 10303-21), or a manifest (JSON) for Creo or of "
-        "an assembly",
+        f"{what}: send a FreeCAD file (.FCStd), a STEP file (ISO 10303-21), or a JSON manifest of a Creo "
+        "model or an assembly",
     )

@@ -121,7 +121,7 @@ class ProgressFollower:
 
 
 def _topics(hint: str) -> Collection[str]:
-    """Return the topics that a hint of progress is about; empty for other hints."""
+    """Return the topics that a hint about progress concerns; empty for other hints."""
     subject, _, names = hint.partition(":")
     job, _, design = names.partition(":")
     if subject != SUBJECT:

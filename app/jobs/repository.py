@@ -190,7 +190,7 @@ def _claimed(lane: Lane, kinds: tuple[str, ...] | None) -> Statement:
 
 
 def beat(session: Session, owner: str, ids: Collection[str], lease: float) -> set[tuple[str, int]]:
-    """Renew the leases [s] of an owner's jobs; return id and attempt of the jobs that it still owns."""
+    """Renew the leases [s] of an owner's jobs; return the id and attempt of each job that it still owns."""
     held = update(JobRow).where(JobRow.id.in_(ids), JobRow.owner == owner, JobRow.state == "running")
     values = {"lease_until": present() + lease}
     rows = session.execute(held.values(values).returning(JobRow.id, JobRow.attempt))

@@ -130,7 +130,7 @@ class BucketFiles:
         if row.size is not None and size != row.size:
             return f"the object has {size} bytes instead of {row.size}"
         if hashlib.sha256(answer[0]).hexdigest() != row.sha:
-            return "the bytes have another hash"
+            return "the bytes do not match the hash"
         return None
 
     def size(self, sha: str) -> int:
@@ -161,7 +161,7 @@ def fault_of(path: Path, row: NamedFile) -> str | None:
             return f"the file has {size} bytes instead of {row.size}"
         with path.open("rb") as file:
             if hashlib.file_digest(file, "sha256").hexdigest() != row.sha:
-                return "the bytes have another hash"
+                return "the bytes do not match the hash"
     except FileNotFoundError:
         return "the file is missing"
     except OSError as error:

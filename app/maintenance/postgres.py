@@ -102,4 +102,6 @@ def _require_schema(connection: Connection) -> None:
         raise CannotRun("The database is empty, or it does not belong to Crankwright.")
     schema = connection.scalar(text("SELECT version_num FROM alembic_version"))
     if schema != newest:
-        raise CannotRun(f"The database has schema {schema}, this program {newest}: use the servers' program.")
+        raise CannotRun(
+            f"The database has schema {schema}, this program needs {newest}: use the version of the servers."
+        )

@@ -91,7 +91,7 @@ class Repair:
         self.runner = Direct(worker, Limits(settings.job_deadline, settings.job_memory_mb))
 
     def row(self, row: NamedFile) -> str | None:
-        """Repair the file that a row names; return the reason if it cannot be repaired."""
+        """Repair the file that a row names; return the reason if that is impossible."""
         if row.kind == "body":
             return "it is not kept anywhere else; nothing needs it as long as the job's answer is good"
         if row.kind == "rows":

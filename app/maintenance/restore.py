@@ -131,7 +131,7 @@ def _take_artifact(sha: str, file: IO[bytes], place: Path, restored: RestoreResu
         raise CannotRun(f"The archive contains artifact {sha} twice.")
     place.parent.mkdir(parents=True, exist_ok=True)
     if _written(file, place) != sha:
-        raise CannotRun(f"Artifact {sha} in the archive is damaged: its bytes have another hash.")
+        raise CannotRun(f"Artifact {sha} in the archive is damaged: its bytes do not match the hash.")
     restored.artifacts.add(sha)
 
 
@@ -148,7 +148,7 @@ def _manifest(entry: tarfile.TarInfo, file: IO[bytes], form: int) -> JsonObject:
 
 def _note(entry: tarfile.TarInfo, file: IO[bytes]) -> JsonObject:
     if entry.size > LARGEST_NOTE:
-        raise CannotRun(f"{entry.name} in the archive has {entry.size} bytes, more than any backup writes.")
+        raise CannotRun(f"{entry.name} in the archive has {entry.size} bytes, more than any backup contains.")
     note = json.loads(file.read())
     if not isinstance(note, dict):
         raise CannotRun(f"{entry.name} in the archive was not written by this program.")
@@ -171,7 +171,7 @@ def require_whole(restored: RestoreResult) -> None:
     """Check the hash of the database and the number of artifacts; raises CannotRun."""
     assert restored.end is not None
     if restored.database != restored.manifest["database"]["sha256"]:
-        raise CannotRun("The database in the archive is damaged: its bytes have another hash.")
+        raise CannotRun("The database in the archive is damaged: its bytes do not match the hash.")
     if restored.end["artifacts"] != len(restored.artifacts):
         raise CannotRun("The archive is not complete: artifacts are missing.")
 
@@ -190,7 +190,7 @@ def _verify(folder: Path, restored: RestoreResult) -> None:
     except sqlite3.DatabaseError as error:
         raise CannotRun(f"The database in the archive cannot be read: {error}.") from error
     if wrong:
-        raise CannotRun(f"The database in the archive contradicts itself: {'; '.join(wrong[:5])}.")
+        raise CannotRun(f"The database in the archive is inconsistent: {'; '.join(wrong[:5])}.")
     assert restored.end is not None
     if lacking := named - restored.artifacts - set(restored.end["missing"]):
         raise CannotRun(f"The archive lacks {len(lacking)} artifacts, such as {min(lacking)}.")

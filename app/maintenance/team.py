@@ -109,11 +109,11 @@ def _read(store: Artifacts, row: NamedFile) -> tuple[bytes | None, str]:
     except ArtifactMissing:
         return None, "the file is missing"
     except ArtifactDamaged:
-        return None, "the bytes have another hash"
+        return None, "the bytes do not match the hash"
     except ArtifactsUnreachable as error:
         raise CannotRun(f"The file store does not answer: {error}.") from None
     if hashlib.sha256(data).hexdigest() != row.sha or (row.size is not None and len(data) != row.size):
-        return None, "the bytes have another hash or another size"
+        return None, "the bytes do not match the hash or the size"
     return data, ""
 
 

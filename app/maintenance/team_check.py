@@ -63,7 +63,9 @@ def _require_schema(connection: Connection) -> None:
     rows = connection.exec_driver_sql("SELECT version_num FROM alembic_version").all()
     schema = str(rows[0][0]) if rows else "none"
     if schema != known_schemas()[0]:
-        raise CannotRun(f"The database has schema {schema}, this program {known_schemas()[0]}: upgrade both.")
+        raise CannotRun(
+            f"The database has schema {schema}, this program needs {known_schemas()[0]}: upgrade both."
+        )
 
 
 def _broken_references(connection: Connection) -> Iterable[str]:

@@ -40,7 +40,7 @@ _process, _numbers = secrets.token_hex(5), itertools.count(1)
 
 
 def request_id(headers: Iterable[tuple[bytes, bytes]]) -> str:
-    """Return the id that a client has given its request, if it is safe to log; else a new one."""
+    """Return the id that a client has given its request, if it is safe to log, otherwise a new id."""
     for name, value in headers:
         if name == b"x-request-id" and _HARMLESS.fullmatch(value) and not holds_key(text := value.decode()):
             return text

@@ -56,7 +56,7 @@ class WriterProbe:
         self._pending: Future[None] | None = None
 
     async def __call__(self) -> str | None:
-        """Return why rows cannot be written, or None."""
+        """Return the reason why rows cannot be written, or None."""
         try:
             if self._pending is None or self._pending.done():
                 self._pending = self._database.submit(_touch)
@@ -78,7 +78,7 @@ class Files:
         self._pending: asyncio.Future[None] | None = None
 
     async def __call__(self) -> str | None:
-        """Return why files cannot be read or stored, or None."""
+        """Return the reason why files cannot be read or stored, or None."""
         try:
             if self._pending is None or self._pending.done():
                 self._pending = asyncio.ensure_future(asyncio.to_thread(self._store.probe))

@@ -1,7 +1,7 @@
 """Estimate the time of a calculation, from measured costs of its levels and the number of points.
 
-The estimate is an order of magnitude and rather too high. An expensive calculation runs outside the server's
-process (see `app.pool.pool`).
+The estimate gives only the order of magnitude, and is more often too high than too low. An expensive
+calculation runs outside the server's process (see `app.pool.pool`).
 """
 
 from __future__ import annotations
@@ -248,7 +248,7 @@ def arrays(inputs: Mapping[str, Raw]) -> dict[str, Shape]:
 
 
 def spanned(shapes: Iterable[Shape]) -> int:
-    """Return the number of points that shapes span together, at least the largest if they do not fit."""
+    """Return the number of points that shapes span together; an upper bound if they are incompatible."""
     # NumPy's own broadcast_shapes fails for counts beyond 2^63.
     axes = zip_longest(*map(reversed, shapes), fillvalue=1)
     return math.prod(map(max, axes))

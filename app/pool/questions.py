@@ -151,7 +151,7 @@ class Questions(Generic[Q, A]):
         self.jobs, self.steps = jobs, steps
 
     def answer(self, question: Q, client: str) -> tuple[A | None, str | None]:
-        """Return the answer as far as known in the caller's time, and the job that completes it, if any.
+        """Return the parts of the answer ready in the caller's time, and the job that completes it, if any.
 
         Raises
         ------
@@ -184,7 +184,7 @@ class Questions(Generic[Q, A]):
         return self.at_once(question) if answer is None else answer, job
 
     def at_once(self, question: Q) -> A:
-        """Return the answer as far as it is known while its caller waits, without a job for the rest."""
+        """Return the parts of the answer that are ready while the caller waits; no job computes the rest."""
         answer = self._reply(question).answer
         assert answer is not None, "a job waits for the whole answer, and a page asks for what has parts"
         return answer

@@ -198,7 +198,7 @@ def calling(steps: Steps | None, job: Job, context: JobContext, client: str, lan
 
 
 def call_as(caller: Caller) -> None:
-    """Evaluate expensive steps on behalf of a caller from here on in this context, such as in a request."""
+    """Set the caller for whom the rest of this context, such as a request, evaluates expensive steps."""
     _caller.set(caller)
 
 
@@ -211,7 +211,7 @@ def announce(text: str) -> None:
 
 @contextmanager
 def stage(first: float, last: float, name: str) -> Iterator[None]:
-    """Report the progress of the calculations in this block as a part of the whole, from `first` to `last`.
+    """Report the progress of the calculations in this block as the part of the total from `first` to `last`.
 
     Each text begins with the name of the part, if the part has a name.
     """

@@ -46,7 +46,7 @@ class Turns:
 def first(waiting: Collection[W], running: Counter[str]) -> W | None:
     """Return the next calculation to run: the one with the lowest turn.
 
-    Among equal turns it is the first one of the client with the fewest running calculations.
+    Among equal turns, the first calculation of the client with the fewest running calculations comes next.
     """
     return min(waiting, key=lambda w: (w.turn, running[w.client]), default=None)
 

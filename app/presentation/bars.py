@@ -40,7 +40,7 @@ class Mark:
 
 
 def tornado(bars: Sequence[Bar]) -> str:
-    """Return a bar chart of shares, total effects behind single effects; empty without shares."""
+    """Return a bar chart of shares, with total effects behind single effects; empty without shares."""
     if not bars:
         return ""
     height = ROW * len(bars) + 24

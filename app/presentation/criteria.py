@@ -1,6 +1,6 @@
 """Criteria in words, for pages and reports: the comparison, the utilisation, the margin, and what is missing.
 
-The sentence on a criterion comes from the REST interface; this module writes the texts around it.
+The sentence about a criterion comes from the REST interface; this module writes the texts around it.
 """
 
 from __future__ import annotations
@@ -110,6 +110,7 @@ class Line:
     remarks: tuple[str, ...]
     unverified: bool = False
     is_open: bool = False
+    is_error_unknown: bool = False
 
     @property
     def place(self) -> str:
@@ -141,6 +142,7 @@ def line(criterion: JudgedCriterion) -> Line:
         remarks=remarks(criterion),
         unverified=criterion.unverified is not None,
         is_open=is_open(criterion),
+        is_error_unknown=_is_error_unknown(criterion),
     )
 
 
@@ -165,7 +167,7 @@ def step_of(criterion: JudgedCriterion) -> str:
 
 
 def title(criterion: JudgedCriterion) -> str:
-    """Return in words what the criterion judges; for a value calculated within the criterion, its own name.
+    """Return the judged value in words; for a value calculated within the criterion, the criterion's name.
 
     If the words do not contain the criterion's own name, that name follows, because another criterion may
     judge the same value.
@@ -287,5 +289,5 @@ _WHY = {
 
 
 def headline_of(state: str, *, is_judged: bool) -> str:
-    """Return the headline shown instead of a verdict: there are no criteria, or why they were not judged."""
+    """Return the headline shown instead of a verdict, which says why there is none."""
     return NO_CRITERIA if is_judged else _WHY.get(state, NOT_JUDGED)

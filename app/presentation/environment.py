@@ -67,6 +67,7 @@ def environment(folder: Path) -> Environment:
         "percent": numbers.percent,
         "rough": numbers.rough,
         "in_line": numbers.in_line,
+        "rounded": numbers.rounded,
         "course": course,
         "reference": Reference.parse,
     }

@@ -25,7 +25,7 @@ def value_of(text: str) -> JsonValue:
 
 
 def text_of(value: object) -> str:
-    """Return the text in a field for a value in the form that users type."""
+    """Return the text that a field shows for a value, in the form in which users type it."""
     if value is None:
         return ""
     if isinstance(value, Mapping) and set(value) == {"value", "unit"}:

@@ -86,7 +86,7 @@ SIGNS = {
     "upper": "",
     "lower": "",
 }  # signs of deviations; upper and lower already have one
-PARTS = ("value", "unit", "reason", *SIGNS, "zone", "distribution")
+PARTS = ("value", "unit", "reason", *SIGNS, "zone", "distribution", "state_in_table")
 
 
 def in_line(quantity: object) -> str:
@@ -100,6 +100,23 @@ def in_line(quantity: object) -> str:
     if hasattr(quantity, "value"):  # a quantity; isinstance with the protocol takes ten times as long
         return _line({name: getattr(quantity, name, None) for name in PARTS})
     return _written(quantity)
+
+
+class Rounded(Protocol):
+    """A value before and after the rounding of its relation."""
+
+    @property
+    def calculated(self) -> object:
+        """Return the quantity before the rounding."""
+
+    @property
+    def chosen(self) -> object:
+        """Return the quantity after it."""
+
+
+def rounded(value: Rounded) -> str:
+    """Return a rounded value on one line: `calculated 23.47 mm → chosen 23.5 mm`."""
+    return f"calculated {in_line(value.calculated)} → chosen {in_line(value.chosen)}"
 
 
 def _line(quantity: Mapping[str, object]) -> str:
@@ -164,7 +181,7 @@ def _flat(values: object) -> Iterator[object]:
 
 
 def tolerance(more: Mapping[str, object]) -> str:
-    """Return a tolerance as it is written after its value: `H7 (+0.025 −0.0)`, `+10 −5 uniform`."""
+    """Return a tolerance as it is written after its value: `H7 (+0.025 −0.0)`, `+10 −5 uniform, in table`."""
     given = {name: more[name] for name in (*SIGNS, "zone", "distribution") if more.get(name) is not None}
     if not given:
         return ""
@@ -173,7 +190,8 @@ def tolerance(more: Mapping[str, object]) -> str:
     limits = signed[0].replace("+", "±", 1) if is_even else " ".join(signed)
     zone = given.get("zone")
     parts = (f"{zone} ({limits})" if zone and limits else zone or limits, given.get("distribution"))
-    return " ".join(str(part) for part in parts if part)
+    end = ", in table" if more.get("state_in_table") else ""
+    return " ".join(str(part) for part in parts if part) + end
 
 
 def _deviation(name: str, size: object) -> str:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from app.presentation.result_lines import ResultLines
 from app.reports.cells import NOTHING, Cell
 
 
@@ -153,6 +154,14 @@ class PaintedField:
 
 
 @dataclass(frozen=True)
+class ToleranceLine:
+    """A parameter with a tolerance, and where the files of its model state it."""
+
+    words: str
+    detail: str
+
+
+@dataclass(frozen=True)
 class Model:
     """A CAD model of the design."""
 
@@ -162,6 +171,7 @@ class Model:
     build: str
     compared: str  # the revision used for comparison
     parameters: list[MappedParameter]
+    tolerances: list[ToleranceLine]
     measures: list[Line]
     analyses: list[Line]  # finite-element results; the origin states how
     warnings: list[StepWarning]
@@ -190,19 +200,6 @@ class Columns:
 
 
 @dataclass(frozen=True)
-class VariantLine:
-    """The verdict on one variant."""
-
-    name: str
-    governs: bool
-    verdict: str  # met, not_met, undecided, not_checked; empty without criteria
-    headline: str
-    governing: str  # the governing criterion, with value and limit
-    used: str
-    problem: str
-
-
-@dataclass(frozen=True)
 class Solid:
     """A solid that one variant uses, or several share."""
 
@@ -214,14 +211,15 @@ class Solid:
 
 @dataclass(frozen=True)
 class Variants:
-    """All variants of the design, with the governing one first."""
+    """All variants of the design."""
 
+    table: ResultLines
     governing: str  # in one sentence; empty without criteria
     judged: ReportVerdict | None  # every criterion of the governing variant
-    lines: list[VariantLine]
+    plots: list[Plot]  # of the governing variant
     inputs: list[Columns]
-    used: list[Columns]  # used share of each limit
-    solids: list[Solid]
+    used: list[Columns]  # in the appendix: used share of each limit
+    solids: list[Solid]  # in the appendix
 
 
 @dataclass(frozen=True)
@@ -267,5 +265,6 @@ class Report:
     steps: list[Step]
     models: list[Model]
     rounds: list[Round] = field(default_factory=list)
+    rounded: list[Line] = field(default_factory=list)
     variants: Variants | None = None
     author: str = ""  # who saved the revision; empty on a service without keys

@@ -42,7 +42,7 @@ class Press:
             except (DeadlineExceeded, MemoryExceeded, JobCrashed) as error:
                 formulas = sum(len(step.formulas) for step in report.steps)
                 reason = f"with {formulas} formulas it takes more time or memory than a job may have"
-                raise Unprintable(f"this report is too long for paper: {reason} ({error})") from error
+                raise Unprintable(f"this report is too long to print: {reason} ({error})") from error
 
     def draw(self, svg: bytes) -> bytes:
         """Return a drawing as PDF; equal drawings give equal bytes. The call blocks, so make it in a thread.

@@ -1,4 +1,4 @@
-"""Choose the pictures of a calculation from one table, by the names of its outputs and which are curves.
+"""Choose the pictures of a calculation from one table, by the names of its outputs and its curves.
 
 `static/pictures.js` draws them in the page and `plots.py` in a report, from the same response.
 """

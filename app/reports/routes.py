@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import chain
 from pathlib import Path
 from typing import Annotated
@@ -55,6 +56,7 @@ def _described(kinds: Mapping[str, str], *, later: bool = False) -> RouteOptions
 
 
 Accept = Annotated[str | None, Header(description="the kind wanted; the first if none is known")]
+Appendix = Annotated[bool, Query(description="whether the report of all variants has its appendix")]
 IfNoneMatch = Annotated[str | None, Header(description="the ETag of a report that is at hand")]
 
 
@@ -159,15 +161,21 @@ async def show_report(
 @router.get("/{id}/revisions/{number}/variants/report", **_described(REPORTS, later=True))
 @router.get("/{id}/revisions/{number}/variants/report.{kind}", **_described(REPORTS, later=True))
 async def show_variants_report(
-    id: Id, asked: TheReportRequest, number: Number | None = None, kind: Id | None = None
+    id: Id,
+    asked: TheReportRequest,
+    number: Number | None = None,
+    kind: Id | None = None,
+    appendix: Appendix = False,
 ) -> Response:
-    """Return one report of all variants of a revision: the governing one first, then the table of all.
+    """Return one report of all variants of a revision: the table of results, then the plots of the worst.
 
-    The design's own worksheet follows once, with a picture of every distinct solid.
+    The appendix has the worksheet of the variant that governs, the used share of every limit, and a picture
+    of every distinct solid.
     """
     reports = asked.reports
-    pictures = [reports.request_pictures, reports.request_variant_pictures]
-    return await asked.answer(reports.gather_variants, pictures, id, number, kind)
+    gather = partial(reports.gather_variants, has_appendix=appendix)
+    pictures = [reports.request_pictures, reports.request_variant_pictures] if appendix else []
+    return await asked.answer(gather, pictures, id, number, kind)
 
 
 @router.get("/{id}/worksheet", **_described(TABLES))

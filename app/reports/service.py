@@ -17,10 +17,14 @@ from sqlalchemy.orm import Session
 from app.approvals.content import shown, steps_taken
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository, stamps, views
+from app.designs.document import Document
 from app.designs.schemas import designs as schemas
 from app.designs.solid_fields import fields_of
+from app.designs.variants.table import applied
 from app.designs.variants.views import variants
 from app.designs.worksheet import worksheet
+from app.plain import JsonObject
+from app.presentation.numbers import rounded
 from app.presentation.units import System
 from app.reports.cells import Cell, cell, clean, typed
 from app.reports.content import Line, Model, Report, Round, Step
@@ -36,6 +40,7 @@ from app.solids.models import Models
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import NotFound
+from app.storage.tables import RevisionRow
 from cad.field_mesh import Glb
 from cad.stamp import stamped
 
@@ -113,35 +118,59 @@ class Reports:
         missing = sorted(key for key, files in there.items() if self._missing(files, (SKETCH,)))
         return [self.models.request_files_of_all(missing, (SKETCH,), client)] if missing else []
 
-    def gather_variants(self, id: str, number: int, system: System, *, pending: bool) -> Report:
-        """Return the report of a revision with all its variants.
+    def gather_variants(
+        self, id: str, number: int, system: System, *, pending: bool, has_appendix: bool = False
+    ) -> Report:
+        """Return the report of a revision with all its variants; its steps are those of the governing one.
+
+        The steps, the parts and the used share of every limit belong to the appendix.
 
         Raises
         ------
         NotFound
             If the revision has no variants.
         """
-        report = self.gather(id, number, system, pending=pending)
         with self.database.read() as session:
+            row = repository.lean(session, id, number)
+            if not row.document.get("variants"):
+                raise NotFound(f"design {id}: revision {number} has no variants")
+            name, revision = views.governing(session, row)
             out = variants(session, id, number, self.catalogues).in_units(system)
-        if not out.variants:
-            raise NotFound(f"design {id}: revision {number} has no variants")
-        table = variants_of(out, pending=pending)
+        document = applied(Document.model_validate(row.document), row.document["variants"].get(name, {}))
+        report = self._gathered(row, revision, document.model_dump(mode="json"), system, pending=pending)
+        plots = [plot for step in report.steps for plot in step.plots]
+        table = variants_of(out, plots, pending=pending, has_appendix=has_appendix)
         verdict = replace(report.verdict, criteria=[], governing=table.governing)
-        signatures = of_variants(report.signatures)
+        signatures = of_variants(report.signatures, has_appendix=has_appendix)
+        if not has_appendix:
+            report = replace(report, steps=[], models=[], rounds=[], rounded=[])
         return replace(report, verdict=verdict, variants=table, signatures=signatures)
 
     def gather(self, id: str, number: int, system: System, *, pending: bool) -> Report:
         """Return the content of the report; `pending` states that a job still draws its pictures."""
-        worked = self.worksheet(id, number, system)
         with self.database.read() as session:
             row = repository.lean(session, id, number)
-            view = views.revision(session, row)
+            revision = views.revision(session, row)
+        return self._gathered(row, revision, row.document, system, pending=pending)
+
+    def _gathered(
+        self,
+        row: RevisionRow,
+        revision: schemas.Revision,
+        document: JsonObject,
+        system: System,
+        *,
+        pending: bool,
+    ) -> Report:
+        """Return the report of a revision whose steps are as in `document`."""
+        id, number = row.design_id, row.number
+        worked = worksheet(revision, self.catalogues.templates, system)
+        with self.database.read() as session:
             models = [
                 self._model(session, id, number, name, model, system, pending)
-                for name, model in view.models.items()
+                for name, model in revision.models.items()
             ]
-            document, signed = row.document, [shown(one) for one in steps_taken(session, row)]
+            signed = [shown(one) for one in steps_taken(session, row)]
             is_released = any(one.step == "released" for one in signed)
             # The report of a released revision never changes, whatever revisions follow.
             head = number if is_released else repository.newest_number(session, id)
@@ -168,7 +197,8 @@ class Reports:
             steps=steps,
             models=models,
             rounds=[_round(one) for one in worked.iterations],
-            author=author_of(view.author, signed),
+            rounded=[Line(one.name, "", Cell(text=rounded(one)), origin=one.rule) for one in worked.rounded],
+            author=author_of(revision.author, signed),
         )
 
     def pictures(self, report: Report) -> dict[str, dict[str, bytes]]:

@@ -38,9 +38,9 @@ def signatures_of(design: str, revision: int, units: System, steps: Sequence[App
 
 
 def author_of(author: Author | None, steps: Sequence[Approval]) -> str:
-    """Return the name of a revision's author; empty for `local`, and for revisions from before 0.2.
+    """Return the name of a revision's author; empty for `local`, and for revisions made before version 0.2.
 
-    After the hand-over it is the name at that time, so that renaming a principal changes no signed report.
+    After the hand-over the name at that time is used, so that renaming a principal changes no signed report.
     """
     if author is None or author.id == LOCAL.id:
         return ""
@@ -48,9 +48,10 @@ def author_of(author: Author | None, steps: Sequence[Approval]) -> str:
     return clean(signed)
 
 
-def of_variants(signatures: Signatures) -> Signatures:
-    """Return the signatures in the report of all variants."""
-    block = Block.model_validate_json(signatures.block).model_copy(update={"has_variants": True})
+def of_variants(signatures: Signatures, *, has_appendix: bool) -> Signatures:
+    """Return the signatures in the report of all variants, with or without its appendix."""
+    more = {"has_variants": True, **({"has_appendix": True} if has_appendix else {})}
+    block = Block.model_validate_json(signatures.block).model_copy(update=more)
     return replace(signatures, block=block.model_dump_json())
 
 

@@ -47,7 +47,7 @@ class StepDocument(TypedDict):
 
 
 def step_of(name: str, step: PreviewedStep, document: StepDocument, catalogues: Catalogues) -> Step:
-    """Return one step, from the worksheet of a revision and from the step as typed (`document`)."""
+    """Return one step, built from the worksheet of a revision and from the step as typed (`document`)."""
     calculated_by, catalogue = step.template, catalogues.templates
     review = review_of(catalogues.snapshot.sheets.released.get((calculated_by.id, calculated_by.version)))
     cls = class_of(catalogue, calculated_by.id, calculated_by.version)
@@ -137,7 +137,7 @@ def _level(level: object, tolerance: float | None) -> str:
 
 
 def _inputs(step: PreviewedStep, typed: Mapping[str, Raw], cls: Class) -> list[Line]:
-    """Return inputs in the order of the template; the inputs of a waiting step appear as typed."""
+    """Return inputs in the order of the template; those of a waiting step appear as their user typed them."""
     names = _ordered(step.inputs, cls.inputs if cls else ())
     return [_input(name, step.inputs[name], typed.get(name), cls) for name in names]
 

@@ -3,36 +3,53 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import TypeVar
 
-from app.designs.schemas.variants import VariantResult, VariantsOut
+from app.designs.schemas.designs import RevisionStep
+from app.designs.schemas.variants import VariantDetail, VariantResult, VariantsOut
 from app.designs.variants.names import BASE
 from app.presentation import numbers
 from app.presentation.criteria import Line, line, tone
+from app.presentation.input_text import text_of
+from app.presentation.result_lines import result_lines
 from app.reports.cells import clean
-from app.reports.content import Columns, File, ReportVerdict, Solid, VariantLine, Variants
+from app.reports.content import Columns, File, Plot, ReportVerdict, Solid, Variants
 from app.reports.typesetting import SKETCH
-from app.reports.verdict import governing_sentence, row_of
-from app.schemas.criteria import Criterion
+from app.reports.verdict import row_of
 
 MOST_COLUMNS = 6  # columns of one table on paper, besides the names
 SIGNS = {"met": "met", "not_met": "NOT MET", "undecided": "undecided", "not_checked": "not checked"}
 
 
-def variants_of(out: VariantsOut, *, pending: bool) -> Variants:
+def variants_of(
+    out: VariantsOut, plots: Sequence[Plot] = (), *, pending: bool, has_appendix: bool
+) -> Variants:
     """Return the content of a report of all variants.
 
-    It is `pending` while the service draws the pictures.
+    `plots` are those of the governing variant. The appendix has the used share of every limit and the
+    solids. The content is `pending` while the service draws the pictures.
     """
     rows = _worst_first(out)
     first = next((row for row in rows if out.governing and row.name == out.governing.variant), None)
     return Variants(
-        governing=_sentence(first),
+        table=result_lines(out.table),
+        governing=clean(out.table.governing),
         judged=_judged(first) if first else None,
-        lines=[_line(row, out) for row in rows],
+        plots=list(plots),
         inputs=[*_parts(_inputs(out, rows), rows)],
-        used=[*_parts(_used(rows), rows)],
-        solids=_solids(rows, pending=pending),
+        used=[*_parts(_used(rows), rows)] if has_appendix else [],
+        solids=_solids(rows, pending=pending) if has_appendix else [],
     )
+
+
+CalculatedStep = TypeVar("CalculatedStep", bound=RevisionStep)
+
+
+def of_variant(detail: VariantDetail, step: str, result: CalculatedStep) -> CalculatedStep:
+    """Return the results of a step with the inputs and outputs of a variant."""
+    inputs = {name: detail.inputs.get(f"{step}.{name}", one) for name, one in result.inputs.items()}
+    outputs = {name: detail.outputs.get(f"{step}.{name}", one) for name, one in result.outputs.items()}
+    return result.model_copy(update={"inputs": inputs, "outputs": outputs})
 
 
 def _worst_first(out: VariantsOut) -> list[VariantResult]:
@@ -46,39 +63,11 @@ def _called(row: VariantResult) -> str:
     return "design itself" if row.name == BASE else row.name
 
 
-def _sentence(first: VariantResult | None) -> str:
-    """Return a sentence that names the governing variant and its criterion."""
-    criterion = _governing(first)
-    if first is None or criterion is None:
-        return ""
-    which = "the design itself" if first.name == BASE else f"variant {first.name}"
-    return clean(f"{which} governs; {governing_sentence(line(criterion))}")
-
-
-def _governing(row: VariantResult | None) -> Criterion | None:
-    name = row.verdict.governing if row and row.verdict else None
-    return next((one for one in row.criteria if one.name == name), None) if row else None
-
-
 def _judged(row: VariantResult) -> ReportVerdict | None:
     if row.verdict is None:
         return None
     criteria = [row_of(line(one), one) for one in row.criteria]
-    return ReportVerdict(row.verdict.headline, tone(row.verdict), "", criteria)
-
-
-def _line(row: VariantResult, out: VariantsOut) -> VariantLine:
-    criterion = _governing(row)
-    shown = line(criterion) if criterion else None
-    return VariantLine(
-        name=_called(row),
-        governs=out.governing is not None and out.governing.variant == row.name,
-        verdict=row.verdict.verdict if row.verdict else "",
-        headline=row.verdict.headline if row.verdict else "",
-        governing=clean(shown.sentence) if shown else "",
-        used=shown.used if shown else "",
-        problem=clean(row.problem.detail) if row.problem else "",
-    )
+    return ReportVerdict(row.verdict.headline, tone(row.verdict), _called(row), criteria)
 
 
 Column = tuple[str, list[str]]  # heading, and a text for each variant
@@ -89,11 +78,17 @@ def _inputs(out: VariantsOut, rows: Sequence[VariantResult]) -> list[Column]:
     columns = []
     for about in out.columns:
         own = f"({numbers.in_line(about.nominal)})" if about.nominal else ""
-        texts = [
-            numbers.in_line(row.values[about.place]) if about.place in row.values else own for row in rows
-        ]
+        texts = [_input(out, row, about.place) or own for row in rows]
         columns.append((clean(about.words), [clean(text) for text in texts]))
     return columns
+
+
+def _input(out: VariantsOut, row: VariantResult, place: str) -> str:
+    """Return the value that a variant overrides; for a list or a curve, as typed."""
+    value = row.values.get(place)
+    if value is None:
+        return ""
+    return text_of(out.variants[row.name][place]) if isinstance(value.value, list) else numbers.in_line(value)
 
 
 def _used(rows: Sequence[VariantResult]) -> list[Column]:

@@ -11,7 +11,7 @@ from templates.core.criteria.judgement import is_model
 
 
 def judged(revision: RevisionWorksheet) -> ReportVerdict:
-    """Return the verdict of a revision, or why there is none."""
+    """Return the verdict of a revision, or the reason why there is none."""
     verdict = revision.verdict
     if verdict is None or not revision.criteria:
         return ReportVerdict(
@@ -24,12 +24,12 @@ def judged(revision: RevisionWorksheet) -> ReportVerdict:
 
 
 def _governing(first: Line | None) -> str:
-    """Return one sentence on the criterion that governs; empty if there is none."""
+    """Return one sentence about the criterion that governs; empty if there is none."""
     return governing_sentence(first) if first else ""
 
 
 def governing_sentence(first: Line) -> str:
-    """Return one sentence on a criterion that governs."""
+    """Return one sentence about a criterion that governs."""
     used = f"{first.used} of the limit used" if first.used else ""
     margin = f"margin {first.margin}" if first.margin else ""
     error = f"error {first.error}" if first.error else ""

@@ -104,6 +104,9 @@ class Shown(Measured):
     upper: float | None = Field(None, description="limit deviations of a toleranced dimension, in `unit`")
     lower: float | None = None
     zone: str | None = Field(None, description="ISO 286 tolerance zone that defines the limits")
+    state_in_table: bool | None = Field(
+        None, description="whether the table of a drawing states the tolerance if no face carries it"
+    )
 
     def in_units(self, system: System) -> Self:
         """Return the magnitude and its limit deviations, which are differences, in a system of units."""

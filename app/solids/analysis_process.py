@@ -68,7 +68,7 @@ class AnalysisRunner:
         whole = shaft_of_throws(shape)
         if question.kind == CHAIN:
             if whole is None:
-                raise AnalysisError("no_throws", f"{shape.id} is not a shaft of throws")
+                raise AnalysisError("no_throws", f"{shape.id} is not a crankshaft made of throws")
             apart = context.run(throws_apart, whole, limits=self.limits)
             return context.run(analyse_chain_in_worker, apart, question, limits=self.limits)
         shaft, throw = shaft_of(shape), throw_of(shape, question)
@@ -127,7 +127,7 @@ def throw_of(shape: CadModel, question: Question) -> Crank | None:
     Raises
     ------
     AnalysisError
-        With code `no_throw`, if the model is not one throw of a crank, or has split pins.
+        With code `no_throw`, if the model is not a single crank throw, or has split pins.
     """
     if question.kind != UNIT_LOADS:
         return None
@@ -136,7 +136,7 @@ def throw_of(shape: CadModel, question: Question) -> Crank | None:
     if sizes is None and whole is not None:
         raise AnalysisError("no_throw", f"{UNIT_LOADS} does not support split pins: give pin_split 0")
     if sizes is None:
-        raise AnalysisError("no_throw", f"{shape.id} is not one throw of a crank")
+        raise AnalysisError("no_throw", f"{shape.id} is not a single crank throw")
     return sizes
 
 

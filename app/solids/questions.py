@@ -93,7 +93,7 @@ class Question:
         return replace(self, level=None, tolerance=None, load=1.0)
 
     def kept(self) -> dict[str, object]:
-        """Return the request as stored with its answers, without the load."""
+        """Return the request in the form that is stored with its answers; it omits the load."""
         return {name: value for name, value in asdict(self).items() if name != "load"}
 
     def shown(self) -> dict[str, object]:
@@ -193,7 +193,7 @@ def in_order(kind: str, outputs: Container[str]) -> tuple[str, ...]:
 
 
 def no_shaft(cls: type[CadModel]) -> str | None:
-    """Return why solids of a model cannot be analysed as shafts; None if they can."""
+    """Return the reason why solids of a model cannot be analysed as shafts; None if they can."""
     if issubclass(cls, AssemblyModel):
         return f"{cls.id} is an assembly: finite elements take one solid"
     if cls.shaft is not CadModel.shaft:
@@ -202,7 +202,7 @@ def no_shaft(cls: type[CadModel]) -> str | None:
 
 
 def not_offered(cls: type[CadModel], kind: str) -> Fault | None:
-    """Return why solids of a model do not allow this kind of analysis; None if they do."""
+    """Return the reason why solids of a model do not allow this kind of analysis; None if they allow it."""
     if kind == BORE_COMPLIANCE:
         from cad.shells.bore_place import has_split_bore  # this module also draws
 
@@ -219,10 +219,10 @@ def not_offered(cls: type[CadModel], kind: str) -> Fault | None:
     if has_throws(cls):
         return None
     if kind == CHAIN:
-        detail = f"{CHAIN} is of a shaft of throws from main to main, as crankshaft 1 is; {cls.id} is not one"
+        detail = f"{CHAIN} analyses a crankshaft made of throws, such as crankshaft 1; {cls.id} is not one"
         return Fault("model", "no_throws", detail)
-    detail = f"{cls.id} is not one throw of a crank, from mid-journal to mid-journal, as crank_throw is"
-    return Fault("model", "no_throw", f"{UNIT_LOADS} analyses one throw: {detail}")
+    detail = f"{cls.id} is not a single crank throw, from mid-journal to mid-journal, as crank_throw is"
+    return Fault("model", "no_throw", f"{UNIT_LOADS} analyses a single throw: {detail}")
 
 
 def what_can_be_asked(cls: type[CadModel]) -> dict[str, object]:

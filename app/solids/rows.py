@@ -115,7 +115,7 @@ def artifacts(session: Session, key: str | None) -> dict[str, str]:
 
 
 def builds(session: Session, keys: Collection[str]) -> dict[str, BuildRow]:
-    """Return the existing ones of several builds, by key."""
+    """Return those of several builds that exist, by key."""
     return {row.key: row for row in session.scalars(select(BuildRow).where(BuildRow.key.in_(keys)))}
 
 
@@ -224,7 +224,7 @@ def renew(session: Session, keys: Collection[str]) -> bool:
 
 
 def _seen(session: Session, keys: Collection[str]) -> Sequence[Row]:
-    """Return the key and age of the existing ones of these builds."""
+    """Return the key and age of those of these builds that exist."""
     ages = _ages(len(keys))
     return ages.run(session, dict(zip(ages.names, keys, strict=True)))
 

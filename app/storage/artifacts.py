@@ -95,7 +95,7 @@ class Artifacts(Protocol):
         ...
 
     def read_note(self, name: str) -> str | None:
-        """Return the note with a name that is not a hash; None if there is none."""
+        """Return the note with this name, which is not a hash; None if there is none."""
         ...
 
     def write_note(self, name: str, text: str) -> None:
@@ -131,7 +131,7 @@ class ArtifactStore:
                         stale.unlink()
 
     def put(self, *parts: bytes | memoryview) -> str:
-        """Store bytes, whole or in parts, durably and return their SHA-256; equal bytes are stored once.
+        """Store bytes durably, whole or in parts, and return their SHA-256; equal bytes are stored once.
 
         An existing file is kept if its bytes are good, and its age is renewed.
         """
@@ -168,7 +168,7 @@ class ArtifactStore:
             except OSError as error:
                 raise self._unreadable(sha, file, error) from error
             if hashlib.sha256(data).hexdigest() != sha:
-                raise self._set_aside(sha, stamp_of(file), f"its {len(data)} bytes have another hash")
+                raise self._set_aside(sha, stamp_of(file), f"its {len(data)} bytes do not match the hash")
         return data
 
     def open(self, sha: str) -> OpenFile:
@@ -234,7 +234,7 @@ class ArtifactStore:
         return (self.read_note(OWNER) or "").strip()
 
     def read_note(self, name: str) -> str | None:
-        """Return the note with a name; None if there is none."""
+        """Return the note with this name; None if there is none."""
         try:
             return (self.folder / name).read_text(errors="replace")
         except FileNotFoundError:
@@ -262,7 +262,7 @@ class ArtifactStore:
         except OSError as error:
             raise self._unreadable(sha, file, error) from error
         if digest != sha:
-            raise self._set_aside(sha, stamp, f"its {stamp.size} bytes have another hash")
+            raise self._set_aside(sha, stamp, f"its {stamp.size} bytes do not match the hash")
         file.seek(0)
         self._verified.add(sha, stamp)
         return stamp

@@ -81,7 +81,7 @@ class BucketStore:
         ArtifactMissing
             If the bucket has no such object, or the name is not a SHA-256.
         ArtifactDamaged
-            If its bytes have another hash; a copy of it is stored under `quarantine/`.
+            If its bytes do not match the hash; a copy of it is stored under `quarantine/`.
         ArtifactsUnreachable
             If there is no copy, and the bucket does not answer.
         """
@@ -157,7 +157,7 @@ class BucketStore:
         return owner
 
     def read_note(self, name: str) -> str | None:
-        """Return the note with a name; None if there is none."""
+        """Return the note with this name; None if there is none."""
         answer = self._bucket.get(name)
         return None if answer is None else answer[0].decode(errors="replace")
 

@@ -130,8 +130,8 @@ def tick(session: Session) -> None:
 def operated(session: Session) -> int:
     """Return the time of operation [s].
 
-    On SQLite it is exact to a second in a unit of work, else it is the time of the last write. On PostgreSQL
-    it is always exact.
+    On SQLite it is exact to a second within a unit of work; otherwise it is the time of the last write. On
+    PostgreSQL it is always exact.
     """
     if DRIVER in session.info or session.get_bind().dialect.name == "sqlite":
         counted = _COUNTED.run(session)

@@ -132,7 +132,9 @@ class GroupWriter:
     def write(self, unit: Unit[T]) -> T:
         """Run a unit of work in the writer thread and return its result once it is durable."""
         if threading.current_thread() is self._thread:
-            raise RuntimeError("A unit of work may not wait for another: use its session.")
+            raise RuntimeError(
+                "A unit of work must not wait for another one: use the session of the running unit."
+            )
         return self.submit(unit).result()
 
     def submit(self, unit: Unit[T]) -> Future[T]:

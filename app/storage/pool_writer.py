@@ -46,7 +46,9 @@ class PooledWriter:
     def write(self, unit: Unit[T]) -> T:
         """Run a unit of work in this thread and return its result once it is durable."""
         if hasattr(self._present, "unit"):
-            raise RuntimeError("A unit of work may not wait for another: use its session.")
+            raise RuntimeError(
+                "A unit of work must not wait for another one: use the session of the running unit."
+            )
         if self._closed:
             raise DatabaseClosed("The database is closed.")
         self._present.unit = unit

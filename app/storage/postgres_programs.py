@@ -9,7 +9,7 @@ DEBIAN = Path("/usr/lib/postgresql")
 
 
 def postgres_program(name: str) -> Path | None:
-    """Return the newest version of a program, such as `pg_dump`; None if it is not installed."""
+    """Return the newest installed version of a program, such as `pg_dump`; None if it is not installed."""
     versions = sorted((path for path in DEBIAN.glob("[0-9]*") if path.name.isdecimal()), key=_number)
     for version in reversed(versions):
         if (program := version / "bin" / name).is_file():

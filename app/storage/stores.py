@@ -83,7 +83,7 @@ def _parsed(url: str) -> SplitResult:
         raise _refused(f"its scheme is {place.scheme[:20]!r}; write {FORMS}")
     if has_more:  # it may contain keys, so the message does not quote it
         raise _refused(
-            f"it contains more than a location; write {FORMS}, with keys in AWS environment variables"
+            f"it contains more than a location: write {FORMS}, and put keys into AWS environment variables"
         )
     return place
 

@@ -112,7 +112,7 @@ def _result(
 
 
 def _answered(**fields: object) -> StudyResult:
-    """Return a result without the fields that are None."""
+    """Return a result without its fields of value None."""
     return StudyResult.model_validate({name: value for name, value in fields.items() if value is not None})
 
 

@@ -81,7 +81,7 @@ def _contradictions(body: StudyIn, varied: Sequence[str]) -> Iterator[Fault]:
         yield Fault("points", "contradiction", _WITHOUT_POINTS[body.method])
     if body.steps is not None and body.method != "grid":
         yield Fault(
-            "steps", "contradiction", f"{body.method} takes no `steps`, only `grid` does; omit `steps`"
+            "steps", "contradiction", f"{body.method} takes no `steps`; omit it, because only `grid` takes it"
         )
     for name in sorted({*body.minimise} & {*body.maximise}):
         yield Fault("maximise", "contradiction", f"{name} cannot be both minimised and maximised")

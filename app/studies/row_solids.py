@@ -140,7 +140,7 @@ class RowSolids:
         return {reference.block for reference in self.measures if reference.analysis is not None}
 
     def resolved(self, rows: Rows, count: int, levels: Levels | None, solids: Solids) -> RowsWithSolids:
-        """Return the measurements of rows, as far as their solids are known."""
+        """Return the measurements of those rows whose solids are known."""
         empty = {reference: np.full(count, np.nan) for reference in self.measures}
         result = RowsWithSolids(empty, np.zeros(count, dtype=bool))
         by_texts = {(solid.model, solid.texts): solid for solid in solids}

@@ -127,7 +127,7 @@ def _outcome(ready: TaskState, problem: Problem, search: Search, book: _Book) ->
 
 
 def _differences(optimum: Optimum) -> tuple[str, ...]:
-    """Return a sentence on why a search did not converge; empty if it did."""
+    """Return a sentence that says why a search did not converge; empty if it did."""
     last = optimum.rounds[-1]
     if optimum.state != "not_settled":
         return ()
@@ -330,7 +330,7 @@ class _Book:
 
 
 def _array(call: _Call, name: str) -> AnyArray:
-    """Return an array of a call; NaN if the call lacks it, such as an error that its level does not state."""
+    """Return one array of a call, or NaN if the call lacks it, as when its level does not state the error."""
     return call.arrays[name] if name in call.arrays else np.full(call.count, np.nan)
 
 

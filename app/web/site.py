@@ -90,9 +90,10 @@ class Files(StaticFiles):
     """Files that a browser caches and revalidates before use, so that it has new ones after an update."""
 
     def lookup_path(self, path: str) -> tuple[str, os.stat_result | None]:
-        """Return the file for a path; from a page's folder only style sheets, scripts and pictures.
+        """Return the file for a path.
 
-        A null byte in the path is refused, because system calls raise an error for it.
+        From a page's folder only style sheets, scripts and pictures are served. A null byte in the path is
+        refused, because system calls raise an error for it.
         """
         is_sent = "\0" not in path and Path(path).suffix in SENT
         return super().lookup_path(path) if is_sent else ("", None)

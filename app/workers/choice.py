@@ -26,7 +26,7 @@ class Workers:
 
 
 def why_silent_here() -> str:
-    """Return why no process on this machine answers."""
+    """Return the reason why no process on this machine answers."""
     return "they are being started, or hang"
 
 

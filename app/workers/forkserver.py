@@ -62,7 +62,7 @@ def main(
 def load(name: str) -> ModuleType | None:
     """Import a module, or all modules of a package; the kernel is loaded but not used.
 
-    Once used, the kernel has threads, which a fork lacks and would wait for forever. Therefore a module may
+    Once used, the kernel has threads, which a fork lacks but would wait for. Therefore a module may
     have a function `rehearse`, which each fork calls while it waits for its job.
     """
     try:
@@ -76,7 +76,7 @@ def load(name: str) -> ModuleType | None:
 
 
 def _serve(server: socket.socket, lifeline: int, rehearsals: Sequence[Rehearsal]) -> None:
-    """Alternate between forking and collecting dead children, so that a death interrupts no other work."""
+    """Alternate between forking and collecting dead children, so that a child's death interrupts nothing."""
     nursery: Nursery = {}
     deaths, knell = socket.socketpair()
     with deaths, knell, selectors.DefaultSelector() as selector:

@@ -1,3 +1,3 @@
-"""The modules that processes which check a team's files import in advance."""
+"""The modules that a process imports in advance if it only checks files of a team."""
 
 CHECKS = ("cad.model", "app.catalogue.check")

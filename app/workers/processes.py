@@ -79,7 +79,7 @@ class JobProcess:
         self._status.close()
 
     def _await_birth(self, cancelled: threading.Event) -> None:
-        """Wait until the process exists; its time is counted from then, not while the fork server imports."""
+        """Wait until the process exists; its time counts from then on, not while the fork server imports."""
         while not ("_pid" in vars(self) or self._status.poll(_GLANCE)):
             if cancelled.is_set():
                 raise JobCancelled

@@ -42,7 +42,7 @@ def legible(name: str) -> str:
         If it contains neither a letter nor a digit, and would look empty.
     """
     if not any(map(str.isalnum, name)):
-        raise ValueError("a name needs a letter or a digit, like A. Weber")
+        raise ValueError("a name must contain a letter or a digit, such as A. Weber")
     return name
 
 
@@ -62,7 +62,7 @@ EDITED = EXAMPLE.replace("> 0;", "> 0; <= 2 m;")
 
 
 def _examples(**example: JsonValue) -> ConfigDict:
-    """Return the configuration of a body with a valid example."""
+    """Return a body's model configuration, with a valid example."""
     return ConfigDict(extra="forbid", strict=True, json_schema_extra={"examples": [{**example}]})
 
 

@@ -36,7 +36,7 @@ ROUNDS = 4
 def checked(text: str, id: str | None) -> bytes:
     """Return the answer to `check` as JSON.
 
-    For a faulty text, its lines show the results of the valid statements.
+    If the text has faults, the lines of the answer show the results of the valid statements.
     """
     try:
         answer = _sound(read(text), id or UNNAMED)
@@ -60,9 +60,9 @@ def _faulty(text: str, refused: SheetRefused) -> SheetCheck:
 
 
 def without_faults(text: str, refused: SheetRefused) -> Sheet | None:
-    """Return the sheet of the valid statements, each in its original line; None if there is none.
+    """Return the sheet of the valid statements, each in its original line; None if there are none.
 
-    Statements that use a faulty one become faulty too, so the text is read up to `ROUNDS` more times.
+    A statement that uses a faulty one becomes faulty too, so the text is read up to `ROUNDS` more times.
     """
     for _ in range(ROUNDS):
         try:

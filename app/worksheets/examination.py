@@ -49,7 +49,7 @@ def examined(text: str) -> Examination:
 
 
 def tried(id: str, version: int, text: str) -> TestRun:
-    """Run the tests of a text, and calculate its golden record: the example, and steps around it."""
+    """Run the tests of a text, and calculate its golden record from the example and inputs near it."""
     try:
         cls = read(text).template(id, version)
     except SheetRefused as refused:
@@ -65,7 +65,7 @@ def tried(id: str, version: int, text: str) -> TestRun:
 
 
 def _unusable(cls: type[Template]) -> Iterator[str]:
-    """Yield a sentence for each part that a template needs but the language does not require."""
+    """Yield a sentence for each part that a template needs although the language does not require it."""
     if not cls.formulas:
         yield "it has no output: write a formula"
     required = [name for name, declared in cls.inputs.items() if declared.required]

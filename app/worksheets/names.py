@@ -16,12 +16,12 @@ _LIKE_A_VERSION = re.compile(r".*_v[0-9]+")
 
 
 def require_free(id: str, catalogues: Catalogues) -> None:
-    """Check that no file has this id, and that the id has no other meaning.
+    """Check that no file has this id and that the id has no other meaning.
 
     Raises
     ------
     InvalidInputs
-        If the id means something else.
+        If the id has another meaning.
     IdTaken
         If a template or a CAD model has it.
     """
@@ -31,7 +31,7 @@ def require_free(id: str, catalogues: Catalogues) -> None:
     files = catalogues.files
     for catalogue in (files.templates, files.models):
         if id in catalogue.ids or any(id == name for name, _ in catalogue.quarantined):
-            raise IdTaken(id, f"a {catalogue.kind} of a file")
+            raise IdTaken(id, f"a {catalogue.kind} in a file")
 
 
 def signed(typed: str | None) -> tuple[str | None, str | None]:

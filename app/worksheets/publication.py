@@ -53,7 +53,7 @@ class WorksheetPublication:
         return {key: read for key, (_, read) in self._read.items() if isinstance(read, str)}
 
     def look(self) -> None:
-        """Update the catalogue after changes in the database, within the time of one update."""
+        """Update the catalogue after changes in the database, within the time allowed for one update."""
         with self._looking:
             with self.database.read() as session:
                 states = repository.states(session)
@@ -101,7 +101,10 @@ def _remedy(state: repository.State) -> str:
 
 
 def _read_again(rows: Sequence[Row], seconds: float) -> dict[Key, tuple[str, ReleasedSheet | str]]:
-    """Return releases with the edit that was read, as many as the time [s] allows, but at least one."""
+    """Return the releases that were read, each with its edit.
+
+    It reads as many releases as the time [s] allows, but at least one.
+    """
     read: dict[Key, tuple[str, ReleasedSheet | str]] = {}
     begun = time.monotonic()
     for row in rows:

@@ -60,7 +60,7 @@ def versions(session: Session, id: str) -> list[Row]:
 
 
 def page(session: Session, limit: int, after: str | None) -> list[Row]:
-    """Return the newest versions in the order of their ids, one more than `limit` if there are more."""
+    """Return the newest versions in the order of their ids; one more than `limit` if there are more."""
     last = select(Row.id, func.max(Row.number).label("number")).group_by(Row.id).subquery()
     rows = select(Row).join(last, and_(Row.id == last.c.id, Row.number == last.c.number))
     if after is not None:

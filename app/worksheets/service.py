@@ -87,7 +87,7 @@ class Worksheets:
         return self._written(unit)
 
     def change(self, id: str, body: SheetPatch, expected: str | None, once: Once) -> Row:
-        """Edit a worksheet and return the draft; if the newest version is released, begin the next one.
+        """Edit a worksheet and return the draft; if the newest version is released, start the next one.
 
         Raises
         ------
@@ -124,12 +124,12 @@ class Worksheets:
         return self._written(unit)
 
     def test(self, id: str, expected: str | None, client: str) -> Row:
-        """Run the tests and the golden steps; if all pass, the version becomes tested.
+        """Run the tests and calculate the golden record; if all pass, the version becomes tested.
 
         Raises
         ------
         OutOfOrder
-            If the newest version is released, or reviewed already.
+            If the newest version is already released or reviewed.
         TestsFailed
             With all faults and failed tests; the state does not change.
         """
@@ -189,7 +189,7 @@ class Worksheets:
         Raises
         ------
         OutOfOrder
-            If it is not released, or withdrawn already.
+            If it is not released, or is withdrawn already.
         """
         with self.database.read() as session:
             rows = repository.versions(session, id) or [repository.newest(session, id)]
@@ -259,7 +259,7 @@ class Worksheets:
             return repository.version(session, id, number)
 
     def calculated(self, client: str, function: Callable[[*Ts], T], *args: *Ts) -> T:
-        """Return the result of a function of a text, calculated in a calculation process.
+        """Return the result of applying a function to a text in a calculation process.
 
         Raises
         ------

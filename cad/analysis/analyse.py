@@ -71,7 +71,7 @@ def _elastic_results(
 ) -> dict[str, dict[str, Any]]:
     """Refine level by level until every output meets the tolerance.
 
-    For a surface, until its stiffness does.
+    A surface is refined until its stiffness meets the tolerance.
     """
     results: dict[str, dict[str, Any]] = {}
     measured = [name for name in outputs if name in _ELASTIC]
@@ -134,7 +134,7 @@ def _at_level(
 def _judged(values: Sequence[float], level: Level, *, is_sharp: bool) -> dict[str, Any]:
     """Return the value of the higher order with its error.
 
-    None if the orders differ so much that elements must be folded.
+    Return None if the orders differ so much that some elements must be folded.
     """
     low, high = values
     if min(low, high) > 0 and (likely := level.error(low, high, is_sharp=is_sharp)) < WORST:
@@ -186,7 +186,7 @@ def _mesh(solid: Solid, elements: int, degrees_of_freedom: int, order: int) -> d
 
 
 def _per_newton_metre(stress: float) -> float:
-    """Return the stress [MPa] under 1 N·m from that under 1 N·mm."""
+    """Convert a stress [MPa] under 1 N·mm to that under 1 N·m."""
     return stress * 1e3
 
 

@@ -70,7 +70,7 @@ class BoredSolid:
 
 
 def read_bored(step: bytes, place: BorePlace) -> BoredSolid:
-    """Read the solids of a STEP file, join them, and keep one half.
+    """Read the solids about the bore of a STEP file, join them, and keep one half.
 
     Raises
     ------
@@ -80,7 +80,7 @@ def read_bored(step: bytes, place: BorePlace) -> BoredSolid:
     with TemporaryDirectory() as folder:
         path = Path(folder, "model.step")
         path.write_bytes(step)
-        solids = list(OCCGeometry(str(path)).shape.solids)
+        solids = list(OCCGeometry(str(path)).shape.solids)[: place.solids or None]
     whole = solids[0]
     for other in solids[1:]:
         whole = whole + other
@@ -100,7 +100,7 @@ def read_bored(step: bytes, place: BorePlace) -> BoredSolid:
 def _upper_half(joined: list[Any]) -> Any:
     """Return the part of a solid at z > 0.
 
-    None if there are several, or if the halves differ in volume, centre or inertia.
+    Return None if there are several such parts, or if the halves differ in volume, centre or inertia.
     """
     if len(joined) != 1:
         return None
@@ -114,14 +114,14 @@ def _upper_half(joined: list[Any]) -> Any:
 
 
 def _look(half: Any, flip: int) -> tuple[Array, Array, Array]:
-    """Return the volume, centre and moments of a solid, or of its mirror image in z = 0."""
+    """Return the volume, centre and moments of a solid, or of its mirror image about z = 0."""
     signs = np.array([1.0, 1.0, flip])
     moments = np.array([[half.inertia[i, j] for j in range(3)] for i in range(3)])
     return np.array([half.mass]), signs * np.array([*half.center]), moments * np.outer(signs, signs)
 
 
 def _name(face: Any, place: BorePlace) -> str:
-    """Return the name of a face (mirror, bore, held or free), recognised by the points of its edges."""
+    """Return the name of a face (mirror, bore, held or free), chosen by the points of its edges."""
     x, y, z = np.array([point for edge in face.edges for point in _points(edge)]).T
     if np.all(np.abs(z) < _NEAR):
         return MIRROR
@@ -176,9 +176,8 @@ def compliance_on(
 ) -> tuple[Array, int]:
     """Return the matrix C [mm/MPa] of a half solid with elements of an order, and the number of unknowns.
 
-    A solid without supports rests on a soft spring [N/mm⁴] at each of its points, which balances the load as
-    the inertia of a free body does. Spatial functions other than the modes may be given, with the same
-    scaling.
+    A solid without supports is held at every point by a soft spring [N/mm⁴], which balances the load as the
+    inertia of a free body does. Spatial functions other than the modes may be given, with the same scaling.
     """
     curve(mesh, order)
     space = ng.VectorH1(mesh, order=order, dirichletx=HELD, dirichlety=HELD, dirichletz=f"{HELD}|{MIRROR}")
@@ -204,7 +203,7 @@ def compliance_on(
 
 
 def _solved(form: Any, inverse: Any, force: Any) -> Any:
-    """Return the displacement under a force; unknowns inside elements are condensed."""
+    """Return the displacement under a force; the unknowns inside elements are condensed."""
     outer, u = force.CreateVector(), force.CreateVector()
     outer.data = force + form.harmonic_extension_trans * force
     u.data = inverse * outer

@@ -54,7 +54,7 @@ class Chain:
     def throw_stiffnesses(self, *, guided: bool) -> Array:
         """Return the stiffness of each throw in the chain [N m/rad]: torque per rotation between its mains.
 
-        In series these stiffnesses give the stiffness of the chain. With guided mains they include the effect
+        These stiffnesses in series give the stiffness of the chain. With guided mains they include the effect
         of the guides and of the neighbouring throws.
         """
         between: Array = np.diff(self._rotations(guided=guided), prepend=0.0)
@@ -83,7 +83,7 @@ class Chain:
         return float(r @ self.assembled("mass") @ r) * 1e-3
 
     def _rotation(self) -> Array:
-        """Return the degrees of freedom when the whole shaft rotates by 1 rad about z."""
+        """Return all displacements when the whole shaft rotates by 1 rad about z."""
         mains = np.tile([0.0, 0, 0, 0, 0, 1], len(self.throws) + 1)
         pins = [
             throw.throw * way

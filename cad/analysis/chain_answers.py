@@ -46,7 +46,7 @@ class SolvedThrows:
 def chain_answers(
     apart: ThrowsApart, boundary: Boundary, level: str | None, tolerance: float | None, report: Report
 ) -> dict[str, dict[str, Any]]:
-    """Return all outputs of the kind `chain`, which one calculation gives together.
+    """Return all outputs of the kind `chain`, which one calculation provides together.
 
     With a tolerance, refine level by level.
     """
@@ -67,7 +67,7 @@ def chain_answers(
 
 
 def solve(apart: ThrowsApart, level: Level, report: Report) -> SolvedThrows:
-    """Return the matrices of each solid, on its mesh of one level."""
+    """Return the matrices of each solid, computed on its mesh at one level."""
     orders = (level.order - 1, level.order)
     matrices: tuple[list[ThrowMatrix], list[ThrowMatrix]] = ([], [])
     elements, freedoms, is_sharp = 0, 0, False

@@ -57,7 +57,7 @@ def sharp_inner_edges(shape: Any, scale: float) -> Edges:
 
 
 def along(edges: Edges, share: float) -> Iterator[tuple[tuple[float, float, float], float]]:
-    """Yield points along edges; their spacing [mm] is a share of the radius of the edge."""
+    """Yield points along edges, at a spacing [mm] that is a share of the radius of the edge."""
     for (start, end), radius in zip(edges.ends, edges.radius, strict=True):
         step = share * float(radius)
         count = ceil(float(np.linalg.norm(end - start)) / step)

@@ -70,7 +70,7 @@ class System:
         self.inverse = self._inverse_of_form(few_forces)
 
     def _inverse_of_form(self, few_forces: bool) -> Any:
-        """Return the solver of the assembled form for a force, on the unknowns outside elements."""
+        """Return a solver of the assembled form for a force; it acts on the unknowns outside elements."""
         if few_forces and self.order > 2:
             by_order = _by_order(self.form, self.space)
             return CGSolver(self.form.mat, by_order, tol=_RESIDUAL, maxiter=_MOST_STEPS)
@@ -105,7 +105,7 @@ class System:
         return force.vec
 
     def loads(self) -> tuple[Any, list[Any]]:
-        """Return the unit load, and the unit forces of a guide that symmetry does not already balance."""
+        """Return the unit load, and the unit forces of a guide that symmetry does not balance already."""
         mesh, parts = self.grid.mesh, self.grid.solid.parts
         shape = ng.CF((-ng.y, ng.x, 0)) if self.load == "torsion" else ng.CF((0, 0, -ng.x))
         unit = shape / (parts * ng.Integrate(shape * shape * ng.ds(LOADED), mesh))
@@ -117,11 +117,10 @@ class System:
 
 
 def _by_order(form: Any, space: Any) -> Any:
-    """Return an approximate inverse of an assembled form, which is exact in second order.
+    """Return an approximate inverse of an assembled form, which is exact for second order.
 
-    Higher orders are inverted by edges and faces.
-
-    The basis is hierarchical: the unknowns of second order are those of vertices and the first of each edge.
+    The basis is hierarchical: the unknowns of second order are those of the vertices and the first of each
+    edge. Higher orders are inverted edge by edge and face by face.
     """
     scalar, mesh, order = space.components[0], space.mesh, space.components[0].globalorder
     edges = mesh.nv + np.arange(mesh.nedge * (order - 1)).reshape(mesh.nedge, order - 1)
@@ -177,11 +176,11 @@ def respond(system: System, boundary: Boundary) -> Response:
 
 
 def is_antisymmetric(mirror: str, load: Kind) -> bool:
-    """Return whether the displacement at the mirror image of each point is minus the image."""
+    """Return whether mirrored points have mirrored displacements of opposite sign."""
     return load == "torsion" or mirror == "x"  # a moment about y is odd in x
 
 
 def _locked(mirror: str, load: Kind) -> str:
-    """Return the directions without displacement on a mirror plane with this normal."""
+    """Return the directions in which a mirror plane with this normal cannot move."""
     tangential = "".join(axis for axis in "xyz" if axis != mirror)
     return (tangential if is_antisymmetric(mirror, load) else mirror) if mirror else ""

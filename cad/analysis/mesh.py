@@ -68,7 +68,9 @@ class Grid:
 def make_grid(
     solid: Solid, fineness: Fineness, near: Iterable[Near] = (), edges: Edges | None = None
 ) -> Grid:
-    """Mesh a solid; if several meshes have the same fineness, pass its `sharp_edges` as `edges`.
+    """Mesh a solid.
+
+    If several meshes have the same fineness, pass the result of `sharp_edges` as `edges`.
 
     Raises
     ------
@@ -113,7 +115,7 @@ def meshed(shape: Any, parameters: MeshingParameters, largest: float) -> Any:
 
 
 def sharp_edges(solid: Solid, fineness: Fineness) -> Edges:
-    """Return the sharp inner edges of a solid, divided as the elements of a fineness divide them.
+    """Return the sharp inner edges of a solid, divided into pieces as long as the elements of a fineness.
 
     Raises
     ------
@@ -127,7 +129,7 @@ def sharp_edges(solid: Solid, fineness: Fineness) -> Edges:
 
 @contextmanager
 def _meshing() -> Iterator[None]:
-    """Convert a failure of Netgen into an analysis error of the solid."""
+    """Convert a failure of Netgen into an analysis error about the solid."""
     try:
         yield
     except Exception as error:  # Netgen raises no more specific exception
@@ -135,7 +137,7 @@ def _meshing() -> Iterator[None]:
 
 
 def curve(mesh: Any, order: int) -> Any:
-    """Curve a mesh to fit its geometry, smoothly into the interior; return the deformation that does it."""
+    """Curve a mesh to fit its geometry, smoothly into the interior; return the deformation that does this."""
     mesh.UnsetDeformation()
     curved = _coordinates(mesh, order)
     mesh.Curve(1)
@@ -199,7 +201,7 @@ def bound_sizes(solid: Solid, fineness: Fineness) -> None:
 
 
 def _limits(edge: Any, most: float) -> tuple[float, float]:
-    """Return the total turning angle [rad] of an edge, and the longest segment [mm] that may span it."""
+    """Return the total turning angle [rad] of an edge, and the longest segment [mm] allowed on it."""
     length = edge.mass
     turn = _turning(edge) if length > 0 else 0.0
     return turn, length / ceil(turn / most - 1e-6) if turn > most else length
@@ -216,7 +218,7 @@ def _turning(edge: Any) -> float:
 
 
 def _ball(near: Near) -> Iterable[tuple[float, float, float]]:
-    """Yield points that fill a ball so densely that the size limit applies between them."""
+    """Yield points that fill a ball densely enough for the size limit to apply between them."""
     count = max(1, ceil(near.reach / near.size))
     line = np.linspace(-near.reach, near.reach, 2 * count + 1)
     grid = np.stack(np.meshgrid(line, line, line), axis=-1).reshape(-1, 3)

@@ -39,7 +39,7 @@ def torsional_mode(response: Response) -> Mode:
     Raises
     ------
     AnalysisError
-        `not_converged` if none of the first 48 modes clearly has the largest one.
+        `not_converged` if none of the first 48 modes clearly has the largest inertia.
     """
     count = _MODES
     while count <= _MOST_MODES:
@@ -54,7 +54,7 @@ def torsional_mode(response: Response) -> Mode:
 
 
 def natural_modes(response: Response, count: int) -> list[Mode]:
-    """Return the lowest modes by Lanczos' method, with the factorised matrix of the static response."""
+    """Return the lowest modes by Lanczos' method, which uses the factorised matrix of the static response."""
     system = response.system
     mass = _mass(response)
     free = np.flatnonzero(np.array(list(system.space.FreeDofs())))
@@ -103,7 +103,7 @@ def _mass(response: Response) -> Any:
 
 
 def _guided(response: Response, u: Any) -> Any:
-    """Return a displacement with added forces of the guide that keep the end on the axis."""
+    """Return a displacement plus that of the guide forces that keep the end on the axis."""
     if response.guides:
         off = np.array([ng.InnerProduct(guide, u) for guide in response.guides])
         for reaction, w in zip(np.linalg.solve(response.gram, off), response.guided, strict=True):

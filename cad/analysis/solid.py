@@ -40,13 +40,13 @@ class Solid:
 
     @cached_property
     def scale(self) -> float:
-        """Return the length for element sizes [mm]: the radius of the loaded end, unless that is small."""
+        """Return a length for element sizes [mm]: the radius of the loaded end, unless that is too small."""
         low, high = self.shape.bounding_box
         return max(self.radius, 0.5 * sqrt(self.shape.mass * self.parts / pi / (high[2] - low[2])))
 
     @property
     def parts(self) -> int:
-        """Return the number of such halves in the whole solid, 1 or 2."""
+        """Return the number of copies of this solid that make up the whole: 1, or 2 if it was halved."""
         return 2 if self.mirror else 1
 
 
@@ -72,7 +72,7 @@ def read_solid(step: bytes, shaft: Shaft, mirrors: Iterable[str] = ("y", "x")) -
 
 
 def planar(face: Any) -> bool:
-    """Return whether a face is flat: its largest principal moment of area is then the sum of the others."""
+    """Return whether a face is flat, so that its largest principal moment of area is the sum of the rest."""
     low, middle, high = np.linalg.eigvalsh(_inertia(face))
     return bool(abs(high - low - middle) < _FLAT * high)
 
@@ -105,7 +105,7 @@ def _middle(shape: Any) -> NDArray[np.float64]:
 
 
 def _images(one: Any, other: Any, axis: str, volume: float) -> bool:
-    """Return whether two halves are mirror images and together make up the whole."""
+    """Return whether two halves are mirror images that together make up the whole."""
     inside = _look([one, other])
     if abs(inside[:, 0].sum() - volume) > _ALIKE * volume:
         return False
@@ -121,7 +121,7 @@ def _images(one: Any, other: Any, axis: str, volume: float) -> bool:
 
 
 def _look(shapes: Iterable[Any]) -> NDArray[np.float64]:
-    """Return, for each shape, a row of area or volume, centre and moments."""
+    """Return a row with the area or volume, the centre and the moments of each shape."""
     rows = []
     for shape in shapes:
         size, centre = shape.Properties()

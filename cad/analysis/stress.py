@@ -3,8 +3,8 @@
 The mesh is refined where the stress is high. Elements of second order find the place on each mesh, at a
 quarter of the cost of the third. From the third mesh on, once a refinement changes the stress little, third
 order confirms it on the same mesh. The stress has converged if the confirmed value is nearly that of second
-order, or nearly that confirmed on a mesh before. A single small change may be chance, so both the refinement
-and one of these changes must be small. The compared stress is recovered: polynomials of neighbouring
+order, or nearly that confirmed on a mesh before. A single small change may be a coincidence, so both the
+refinement and one of these changes must be small. The compared stress is recovered: polynomials of neighbouring
 elements are averaged where they meet (Zienkiewicz and Zhu 1992). At a sharp inner corner the stress is
 unbounded and each refinement raises it by a quarter, so the analysis gives no value, and names the corner as
 the reason. The search omits the regions near the ends, where the idealised clamp or load disturbs the field
@@ -143,7 +143,7 @@ class Places:
     values: Array  # (elements,) the highest stress in each element [MPa] under 1 N·mm
 
     def high(self, share: float) -> tuple[Near, ...]:
-        """Return the elements to refine: those with more than a share of the greatest stress."""
+        """Return the elements to refine: those whose stress exceeds a share of the greatest stress."""
         return tuple(_halved(one) for one in self.corners[self.values > share * self.peak.value])
 
 
@@ -171,7 +171,7 @@ def _places_on(response: Response, measure: Measure) -> Places:
 
 
 def searched(solid: Solid) -> tuple[float, float]:
-    """Return the levels of z [mm] between which the greatest stress is searched."""
+    """Return the range of z [mm] in which the greatest stress is searched."""
     ends = [face.center.z for face in solid.shape.faces if face.name in (HELD, LOADED)]
     low, high = min(ends), max(ends)
     extents = [_extent(face) for face in solid.shape.faces if face.name == FREE]

@@ -102,7 +102,7 @@ def _at(where: Any, *functions: Any) -> Array:
 
 
 def _division(elements: int) -> int:
-    """Return the number of parts into which the side of an element is divided."""
+    """Return the number of parts into which each side of an element is divided."""
     return max(n for n in range(1, _FINEST + 1) if n == 1 or elements * n**2 <= MOST_TRIANGLES)
 
 
@@ -113,7 +113,7 @@ def _lattice(division: int) -> Integers:
 
 
 def _rule(lattice: Integers, division: int) -> Any:
-    """Return the points of a lattice in NGSolve's form: the weights of the first two corners."""
+    """Return the points of a lattice in the form that NGSolve uses: the weights of the first two corners."""
     points = [(i / division, j / division) for i, j, _ in lattice.tolist()]
     return ng.IntegrationRule(points, [0.0] * len(points))
 
@@ -143,7 +143,7 @@ def _shared(corners: Integers, lattice: Integers) -> tuple[Integers, Integers]:
 
 
 def _whole(half: Surface, normal: int, antisymmetric: bool) -> Surface:
-    """Return both halves, of which one is the mirror image; they share the points of the mirror plane."""
+    """Return both halves: the given one and its mirror image, which share the points of the mirror plane."""
     image = np.where(np.arange(3) == normal, -1.0, 1.0)
     moved = -image if antisymmetric else image
     apart = np.abs(half.points[:, normal]) > _NEAR

@@ -47,7 +47,7 @@ class ThrowMatrix:
 
 
 def matrix_on(grid: Grid, order: int, shaft: Shaft, pin: PinPlace) -> ThrowMatrix:
-    """Return the stiffness and mass of a throw on its mesh, with elements of an order."""
+    """Return the stiffness and mass matrices of a throw, computed on its mesh with elements of an order."""
     system = System(grid, order, shaft.material, "torsion")
     pitch = shaft.loaded - shaft.held
     loads = [*(system.traction(field) for field in section_loads(system, LOADED)), *_on_the_pin(system, pin)]

@@ -30,9 +30,10 @@ _PER_UNIT = {"force": 1e3, "moment": 1e6}  # N per kN, N·mm per kN·m
 def unit_load_tables(
     step: bytes, shaft: Shaft, crank: Crank, level: Level, report: Callable[[float, str], None]
 ) -> dict[str, dict[str, Any]]:
-    """Return all outputs of the kind `unit_loads`, which one set of solutions gives together.
+    """Return all outputs of the kind `unit_loads`, which one set of solutions provides together.
 
-    If the throw has no fillets, or its pin no plain cylinder, the values are None with the reason.
+    If the throw has no fillets, or its pin has no plain cylinder, the values are None, and the reason is
+    stated.
     """
     started = time.perf_counter()
     report(0.0, "reading and meshing the solid")
@@ -74,7 +75,7 @@ def unit_load_tables(
 
 
 def as_tables(stresses: UnitStresses) -> dict[str, list[list[float]]]:
-    """Return the tensors under 1 N or 1 N·mm, and their points, in the units of the outputs."""
+    """Convert the tensors under 1 N or 1 N·mm, and their points, to the units of the outputs."""
     tables: dict[str, Array] = {"points": stresses.points}
     for load, tensors in stresses.tensors.items():
         tables[f"stress_of_{load}"] = _PER_UNIT[load.split("_")[0]] * tensors

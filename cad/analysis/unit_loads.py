@@ -131,8 +131,8 @@ class LoadedThrow:
 def fillet_stresses(throw: LoadedThrow, before: Callable[[str], None] | None = None) -> UnitStresses:
     """Return the tensors of all unit loads at the point of highest stress in each sector of the fillets.
 
-    The point of highest stress is that with the largest von Mises stress under any load, relative to the
-    maximum of that load. `before` is called with the name of each load before it is solved.
+    The point of highest stress has the largest ratio of von Mises stress under any load to the maximum of
+    that load. The function `before` receives the name of each load before it is solved.
 
     Raises
     ------

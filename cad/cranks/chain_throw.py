@@ -21,7 +21,7 @@ from cad.step import write_step
 
 
 def has_throws(cls: type[CadModel]) -> bool:
-    """Return whether a model is a shaft of throws, that is, whether its `drawn` returns a `WholeShaft`."""
+    """Return whether a model is a crankshaft of throws: its `drawn` returns a `WholeShaft`."""
     declared = getattr(getattr(cls, "drawn", None), "__annotations__", {})
     return declared.get("return") in (WholeShaft, WholeShaft.__name__)
 
@@ -37,7 +37,7 @@ def shaft_of_throws(shape: CadModel) -> WholeShaft | None:
 def sizes_of_throw(whole: WholeShaft) -> Crank | None:
     """Return the sizes of a shaft's throws, which are equal except for the counterweights.
 
-    The result is None for split pins.
+    Return None for split pins.
     """
     if whole.split:
         return None
@@ -51,7 +51,7 @@ def first_throw_apart(whole: WholeShaft) -> ThrowsApart:
 
 
 def throws_apart(whole: WholeShaft) -> ThrowsApart:
-    """Return all throws of a shaft as separate solids; equal throws are built once.
+    """Return all throws of a shaft as separate solids; equal throws are built only once.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def throws_apart(whole: WholeShaft) -> ThrowsApart:
 def throw_step(whole: WholeShaft, number: int) -> tuple[bytes, Shaft, PinPlace]:
     """Return one throw of a shaft, numbered from 0: its STEP file, its ends, and its pin position.
 
-    z = 0 is half way between the mains; x points to the pin, or to the front pin if the pins are split.
+    z = 0 is halfway between the mains; x points to the pin, or to the front pin if the pins are split.
     """
     throw = whole.throws[number]
     half = whole.like.journal_length / 2

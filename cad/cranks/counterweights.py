@@ -15,7 +15,7 @@ def count(angles: Array) -> Array:
 
 @units("m", "1", returns="1")
 def webs_of(radii: Array, throws: Array) -> Array:
-    """Return the number of webs with given radii: all webs, if there is one number."""
+    """Return the number of webs for which radii are given: all webs if there is a single number."""
     return 2 * throws if np.ndim(radii) == 0 else np.asarray(float(np.shape(radii)[-1]))
 
 

@@ -111,7 +111,7 @@ class EndParameters(CrankRules):
     @require("bolt_circle_diameter", "bolt_hole_diameter", "bolt_holes",
              remedy="take fewer or smaller holes, or a larger bolt circle")  # fmt: skip
     def bolts_keep_apart(self) -> Truth:
-        """Between neighbouring bolt holes there is at least 5 % of their diameter."""
+        """The gap between neighbouring bolt holes is at least 5 % of their diameter."""
         return (self.d_b <= 0) | (self.n_b <= 1) | (self.D_b * np.sin(np.pi / self.n_b) >= 1.05 * self.d_b)
 
     @require("bolt_hole_depth", "flange_thickness", remedy="make the holes less deep or the flange thicker")

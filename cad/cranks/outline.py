@@ -2,7 +2,7 @@
 
 The body runs from half a width below the journal's axis to half a width above the pin's, with round or square
 ends. The counterweight is a sector about the journal's axis, on the side away from the pin, as thick as the
-web. Areas and moments here are closed forms; the kernel computes nothing here.
+web. Areas and moments are closed forms, which do not use the kernel.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class Outline:
         return body + self._sector
 
     def moment_beyond(self, start: float) -> float:
-        """Return the first moment, about x = start, of the area beyond x = start [mm³].
+        """Return the first moment of the area beyond x = start, about the line x = start [mm³].
 
         The start must be above the journal axis.
         """
@@ -73,7 +73,7 @@ class Outline:
         return [first, *upper, last, *lower]
 
     def _round(self) -> tuple[Run, list[Run], Run]:
-        """Return the upper side of a round web: the end beyond the pin, the side, and any other end."""
+        """Return the upper side of a web with round ends: the end beyond the pin, the side, any other end."""
         h, R = self.half_width, self.throw
         first, last = ((R, -h), (self.tip, 0.0), (R, h)), ((0.0, h), (-h, 0.0), (0.0, -h))
         side: Run = ((R, h), (0.0, h))
@@ -118,7 +118,7 @@ def edge(run: Run, z: float) -> Edge:
 
 
 def draw(run: Run, place: Callable[[float, float], Vector]) -> Edge:
-    """Return the edge of a line or an arc; `place` maps its points to space."""
+    """Return the edge of a line or an arc; `place` converts its points to points in space."""
     points = [place(*point) for point in run]
     return segment(*points) if len(points) == 2 else Edge.makeThreePointArc(*points)
 

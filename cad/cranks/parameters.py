@@ -125,7 +125,7 @@ class CrankParameters(CadModel):
 
     @formula("mm", "web end thickness", symbol="L_e")
     def L_e(self) -> Array:
-        """Thickness of a web at its end beyond the pin, where the inclined face removes most."""
+        """Thickness of a web at its end beyond the pin, where the inclined face removes most material."""
         return self.L_w - np.tan(self.beta) * (self.R + self.W / 2 - self.x_b)
 
     @formula("mm", "drilling rise", symbol="h_o")

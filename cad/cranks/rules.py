@@ -17,7 +17,7 @@ from templates.core.language.template import Array, Truth, require, units
 
 @units(None, "m", returns="m")
 def corner(shape: str, width: Array) -> Array:
-    """Return the distance [m] of a web corner from the journal axis, on the side of the counterweight."""
+    """Return the distance [m] from the journal axis to a corner of the web on the counterweight's side."""
     return {"obround": 0.5, "rectangular": 0.5 * 2**0.5}[shape] * width
 
 
@@ -137,7 +137,7 @@ class CrankRules(CrankParameters):
         "oil_drilling_diameter", "face_inclination", remedy="make the oil drilling or the inclination smaller"
     )
     def drilling_keeps_below_incline(self) -> Truth:
-        """Between oil drilling and inclined face there is at least a tenth of the drilling's radius."""
+        """The oil drilling keeps at least a tenth of its radius away from the inclined face."""
         covered = (self.c_1 >= 0.55 * self.d_o) & (self.c_2 >= 0.55 * self.d_o)
         return (self.d_o <= 0) | (self.beta <= 0) | covered
 

@@ -29,8 +29,8 @@ def at_fillets(
     Values elsewhere are NaN.
 
     Points [p, 3] are in the axes of the throw: z = 0 is mid-pin, x points to the pin. `places` are the angle
-    of the pin [rad] and the z of mid-pin [mm] of each throw; every throw gets the same values. Round a
-    fillet, values are interpolated linearly in the angle between the points.
+    of the pin [rad] and the z coordinate of mid-pin [mm] of each throw; every throw gets the same values.
+    Around a fillet, values are interpolated linearly in the angle between the points.
     """
     painted = np.full(len(corners), np.nan)
     for angle, middle in places:
@@ -46,7 +46,7 @@ def at_fillets(
 
 
 def places_of(whole: WholeShaft) -> list[tuple[float, float]]:
-    """Return the angle [rad] and mid-pin [mm] of each throw of a shaft."""
+    """Return the pin angle [rad] and the z coordinate of mid-pin [mm] of each throw of a shaft."""
     return [(throw.angle, whole.pitch * (number + 0.5)) for number, throw in enumerate(whole.throws)]
 
 
@@ -58,7 +58,7 @@ def in_throw(corners: Array, angle: float, middle: float) -> Array:
 
 
 def _round(ring: Ring, corners: Array, points: Array, values: Array) -> Array:
-    """Return values at vertices by their angle round the axis of a ring, interpolated between its points."""
+    """Return values at vertices, interpolated by their angle about the axis of a ring between its points."""
     angle, known = (np.arctan2(at[:, 1], at[:, 0] - ring.axis) for at in (corners, points))
     return np.asarray(np.interp(angle, known, values, period=2 * pi))
 

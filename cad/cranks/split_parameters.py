@@ -41,13 +41,13 @@ def where_split(split: Array, length: Array) -> Array:
 def least_gap(pins: Array, split: Array, far: Array, journal: Array, rise: Array) -> Array:
     """Return the smallest distance [m] between the axes of the two drillings that end in one journal.
 
-    The result is infinite if none do.
+    The result is infinite if no journal has two drillings.
 
-    One comes from the rear pin in front of the journal, the other from the front pin behind it. Both run from
-    `far` across to the other side of the journal, `rise` along the shaft, to the same section. They are
-    mirror images, so they are closest at corresponding points: the distance is 2 s r h / sqrt(s² X² + h²),
-    where s is the sine of half the angle between them, r the radius of the journal, h the rise, and X the
-    distance across.
+    One drilling comes from the rear pin in front of the journal, the other from the front pin behind it. Both
+    run from `far` across to the other side of the journal, and by `rise` along the shaft, to the same
+    section. They are mirror images, so they are closest at corresponding points: the distance is 2 s r h /
+    sqrt(s² X² + h²), where s is the sine of half the angle between them, r the radius of the journal, h the
+    rise, and X the distance across.
     """
     if np.ndim(pins) == 0 or np.shape(pins)[-1] < 2:
         return np.asarray(np.inf)

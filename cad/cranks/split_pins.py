@@ -31,7 +31,7 @@ class SplitPins:
         return (pi * self.half_width**2 + 2 * self.half_width * self.apart(throw)) * self.thickness
 
     def web(self, front: float, low: float, throw: float) -> Shape:
-        """Return the middle web between a pin at an angle [rad] and the next one, from a level of z on."""
+        """Return the middle web between a pin at an angle [rad] and the next one, begun at a level of z."""
         rear = front + self.angle
         x, y = (throw / 2 * (f(front) + f(rear)) for f in (cos, sin))
         along = atan2(sin(rear) - sin(front), cos(rear) - cos(front))

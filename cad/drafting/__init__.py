@@ -1,1 +1,1 @@
-"""Dimensioned drawings of any model, from its STEP file: two views, and a dimension for each parameter."""
+"""Make dimensioned drawings of a model from its STEP file: two views, with a dimension for each parameter."""

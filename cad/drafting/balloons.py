@@ -1,4 +1,4 @@
-"""Balloons (ISO 6433): each part of an assembly has a number, with a leader to a point on it."""
+"""Balloons (ISO 6433): each part of an assembly gets a number, with a leader to a point on the part."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _MOST = 24  # parts of a sheet that get balloons
 
 
 def balloons(section: View, bodies: Sequence[Body]) -> Iterator[tuple[int, Point]]:
-    """Yield the number of each part, as in the parts list, and a point of it in the section."""
+    """Yield the number of each part in the parts list, and a point on that part in the section."""
     if not 1 < len(bodies) <= _MOST:
         return
     for number, body in enumerate(bodies):
@@ -21,7 +21,11 @@ def balloons(section: View, bodies: Sequence[Body]) -> Iterator[tuple[int, Point
 
 
 def _on_cut(section: View, part: int) -> Point | None:
-    """Return a point within the largest cut face of a part: its centroid, or the middle of a side."""
+    """Return a point on the largest cut face of a part.
+
+    The point is the centroid of the face if it lies within the face, otherwise the middle of the longest
+    side.
+    """
     outlines = [[(x, y) for x, y, _ in cut.outlines[0]] for cut in section.cut if cut.part == part]
     if not outlines:
         return None
@@ -36,18 +40,18 @@ def _on_cut(section: View, part: int) -> Point | None:
 
 
 def _area(line: Sequence[Point]) -> float:
-    """Return the area within a closed line, with its sign."""
+    """Return the signed area of a closed polygon, positive if its corners run counter-clockwise."""
     return sum(x * v - u * y for (x, y), (u, v) in zip(line, [*line[1:], line[0]], strict=True)) / 2
 
 
 def _is_inside(point: Sequence[float], sides: Sequence[tuple[Point, Point]]) -> bool:
-    """Return whether an odd number of sides cross the ray from a point to the right."""
+    """Return whether a point is inside a polygon, by the parity of the sides that a ray crosses."""
     x, y = point
     over = [(a, b) for a, b in sides if (a[1] > y) != (b[1] > y)]
     return sum(a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) > x for a, b in over) % 2 == 1
 
 
 def _within(section: View, body: Body) -> Point:
-    """Return the middle of the box of a part that is not cut."""
+    """Return the centre of the bounding box of a part that the section does not cut."""
     middle = body.shape.moved(body.places[0]).BoundingBox().center
     return section.frame.flat(middle)

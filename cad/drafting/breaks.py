@@ -1,7 +1,7 @@
-"""Broken-out sections (ISO 128-3): a view is cut open to the axis of a hole that no section shows.
+"""Broken-out sections (ISO 128-3): cut a view open down to the axis of a hole that no section shows.
 
-Of several equal holes, the one farthest to the right in the view is opened. The cut is a box, whose sides
-are drawn as thin lines with zigzags (ISO 128-2, 01.1.19).
+Of several equal holes, the one farthest to the right in the view is opened, together with coaxial ones. The
+removed material is a box, whose sides are drawn as thin lines with zigzags (ISO 128-2, 01.1.19).
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ _MOST = 3  # in a view
 
 @dataclass(frozen=True)
 class Break:
-    """A box in a view, by two corners, which opens the part from a plane at `depth` towards the eye."""
+    """A rectangle in a view, by two corners; the material in front of the plane at `depth` is removed."""
 
     low: Point
     high: Point
     depth: float
 
     def solid(self, plane: Plane, reach: float) -> Solid:
-        """Return the removed box."""
+        """Return the removed box as a solid."""
         corner = plane.toWorldCoords((*self.low, self.depth))
         placed = Location(Plane(corner, plane.xDir, plane.zDir))
         return Solid.makeBox(self.high[0] - self.low[0], self.high[1] - self.low[1], reach).moved(placed)
 
     def faces(self, plane: Plane, shape: Shape) -> list[Face]:
-        """Return the faces in which the bottom of the box cuts a shape."""
+        """Return the faces of a shape that the bottom of the box exposes."""
         (x, y), (u, v) = self.low, self.high
         middle = plane.toWorldCoords(((x + u) / 2, (y + v) / 2, self.depth))
         bottom = Face.makePlane(v - y, u - x, Vector(), Vector(0, 0, 1))  # length is along y
@@ -45,7 +45,7 @@ class Break:
         return list(placed.intersect(shape).Faces())
 
     def bounds(self, curve: Curve) -> bool:
-        """Return whether a line is on a side of the box."""
+        """Return whether a curve lies on one side of the rectangle."""
         (x, y), (u, v) = self.low, self.high
         for along, side, ends in ((0, x, (y, v)), (0, u, (y, v)), (1, y, (x, u)), (1, v, (x, u))):
             if all(
@@ -57,7 +57,7 @@ class Break:
 
 
 def breaks(shapes: Sequence[Shape], plane: Plane, shown: Sequence[float]) -> list[Break]:
-    """Return the break-outs of a view in a plane, without holes whose diameters are `shown` elsewhere."""
+    """Return the broken-out sections of a view; holes with a diameter in `shown` need none."""
     holes: dict[tuple[float, ...], list[tuple[Point, Point, Surface, float]]] = {}
     for hole in (c for shape in shapes for c in look(shape).cylinders if _is_across(c, plane)):
         if any(abs(hole.diameter - diameter) < _ON for diameter in shown):
@@ -70,17 +70,24 @@ def breaks(shapes: Sequence[Shape], plane: Plane, shown: Sequence[float]) -> lis
     if not holes:
         return []
     box = _box(shapes, plane)
-    found = []
+    lines = list[list[tuple[Point, Point, Surface, float]]]()
     for group in holes.values():
         chosen = max(group, key=lambda one: (round(one[0][0] + one[1][0], 3), one[0][1] + one[1][1]))
         joined = [one for one in group if _are_in_line(one, chosen)]
-        corners = [point for low, high, *_ in joined for point in (low, high)]
-        found.append(_region(corners, chosen[2].diameter, chosen[3], shapes, plane, box))
+        if coaxial := next((line for line in lines if _are_in_line(line[0], chosen)), None):
+            coaxial += joined  # a hole with its counterbore, or narrower in the next part
+        else:
+            lines.append(joined)
+    found = []
+    for line in lines:
+        corners = [point for low, high, *_ in line for point in (low, high)]
+        widest = max(hole.diameter for *_, hole, _ in line)
+        found.append(_region(corners, widest, line[0][3], shapes, plane, box))
     return found[:_MOST]
 
 
 def _is_across(cylinder: Surface, plane: Plane) -> bool:
-    """Return whether an axis is horizontal or vertical in a plane of the view."""
+    """Return whether the axis of a cylinder is horizontal or vertical in the view."""
     along = (abs(cylinder.direction.dot(axis)) for axis in (plane.xDir, plane.yDir))
     return max(along) > 1 - 1e-9
 
@@ -93,7 +100,7 @@ def _ends(cylinder: Surface, plane: Plane) -> tuple[Point, Point]:
 
 
 def _is_hollow(hole: Surface, shapes: Sequence[Shape]) -> bool:
-    """Return whether the middle of a cylinder is empty and its surroundings are solid, all the way round."""
+    """Return whether a cylinder is a hole: its middle is empty and there is material all around it."""
     foot = hole.point - hole.direction * hole.point.dot(hole.direction)
     middle = foot + hole.direction * (sum(hole.reach) / 2)
     across = hole.direction.cross(
@@ -123,7 +130,11 @@ def _region(
     plane: Plane,
     box: tuple[Point, Point],
 ) -> Break:
-    """Return the box about a hole: its sides in the material where they can be, or beyond the part."""
+    """Return the box around a hole.
+
+    Each side lies in the material if possible. A side that would lie near the edge of the part moves beyond
+    it.
+    """
     low = [min(point[n] for point in corners) for n in (0, 1)]
     high = [max(point[n] for point in corners) for n in (0, 1)]
     along = 0 if high[0] - low[0] > high[1] - low[1] else 1
@@ -150,7 +161,7 @@ def _region(
 def _is_within(
     place: float, axis: int, reach: tuple[float, float], depth: float, shapes: Sequence[Shape], plane: Plane
 ) -> bool:
-    """Return whether points of a side are inside the material."""
+    """Return whether sample points along a side of the box are all inside the material."""
     for number in range(_SAMPLES):
         across = reach[0] + (reach[1] - reach[0]) * (number + 0.5) / _SAMPLES
         point = (place, across) if axis == 0 else (across, place)
@@ -160,21 +171,21 @@ def _is_within(
 
 
 def _box(shapes: Sequence[Shape], plane: Plane) -> tuple[Point, Point]:
-    """Return the bounding box of shapes in the view."""
+    """Return the bounding box of the shapes in the coordinates of the view."""
     flat = Compound.makeCompound([shape.moved(Location(plane).inverse) for shape in shapes])
     box = BoundBox._fromTopoDS(flat.wrapped)
     return (box.xmin, box.ymin), (box.xmax, box.ymax)
 
 
 def opened(shape: Shape, cuts: Sequence[Break], plane: Plane, reach: float) -> Shape:
-    """Return a shape without the material that broken-out sections remove."""
+    """Return a shape without the material that the broken-out sections remove."""
     for cut in cuts:
         shape = shape.cut(cut.solid(plane, reach))
     return shape
 
 
 def zigzag(line: Polyline, scale: float) -> Polyline:
-    """Return a straight line with zigzags, one for each 60 mm on paper; a short line stays straight."""
+    """Return a straight line with a zigzag for each 60 mm on paper, at least one if longer than 8 mm."""
     (x, y), (u, v) = line[0], line[-1]
     size = ((u - x) ** 2 + (v - y) ** 2) ** 0.5
     count = int(size * scale // 60) or int(size * scale > 8)

@@ -1,10 +1,12 @@
-"""What a drawing shows: views, removed sections and the dimensions that define its parts."""
+"""The content of a drawing: views, removed sections and the dimensions that define its parts."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import hypot
 
+from cad.drafting.cross_sections import cross_sections
 from cad.drafting.declaration import DrawingDeclaration
 from cad.drafting.definition import Definition
 from cad.drafting.measures import lengths, measures
@@ -17,21 +19,21 @@ from cad.drafting.supplement import Supplement
 from cad.drafting.views import View, is_assembly, views
 from cad.header import Header
 from cad.inspect import look_at
-from cad.step import Body
-from cad.surfaces import PartSurfaces, Surface
+from cad.step import Body, rigid
+from cad.surfaces import PartSurfaces, Surface, Z
+from cad.tolerances import toleranced_in
 
 
 @dataclass(frozen=True)
 class Content:
-    """What a drawing shows.
+    """The content of a drawing.
 
     Attributes
     ----------
     unseen
-        Parameters that no dimension shows.
+        Parameters that no dimension shows, or whose tolerances none shows.
     undefined
-        What its dimensions have to define, before any of them is taken; None of an assembly, whose parts
-        have sheets of their own.
+        Features that the dimensions must define; None for an assembly, whose parts have their own sheets.
     repeated
         Start and end of lengths along the shaft that repeat, by parameter.
     """
@@ -47,10 +49,17 @@ class Content:
     def plans(self) -> Iterator[Plan]:
         """Yield the sheets and scales in the order in which they are tried."""
         elsewhere = sum(len(one.dimensions) for one in self.removed)
-        return plans(self.section, self.end, self.dimensions, elsewhere)
+        below = any(one.stations for one in self.removed)
+        return plans(self.section, self.end, self.dimensions, elsewhere, below=below)
 
     def missing(self, without: Dimension | None = None) -> list[str]:
-        """Return in words what no dimension defines, perhaps if one of them were left out."""
+        """Return descriptions of everything that the dimensions leave undefined.
+
+        Parameters
+        ----------
+        without
+            A dimension to ignore, as if the drawing did not show it.
+        """
         if self.undefined is None:
             return []
         definition = Definition.of(self.undefined)
@@ -67,7 +76,10 @@ class Content:
 def declared_of(
     bodies: Sequence[Body], header: Header | None, whole: Sequence[Body] = ()
 ) -> tuple[dict[str, PartSurfaces], DrawingDeclaration]:
-    """Return the surfaces of bodies, and what their model declares; `whole` are all its parts."""
+    """Return the surfaces of the bodies and the declaration of their model.
+
+    On the sheet of a part, `whole` holds all parts of the model.
+    """
     seen = look_at(bodies)
     every = look_at(whole) if len(whole) > len(bodies) else seen
     declared = DrawingDeclaration.of(header, every, is_assembly=is_assembly(bodies))
@@ -75,7 +87,7 @@ def declared_of(
 
 
 def content_of(bodies: Sequence[Body], header: Header | None, whole: Sequence[Body] = ()) -> Content:
-    """Return what the drawing of a STEP file, or of one of its parts, shows if there is room."""
+    """Return the preferred content for the drawing of a STEP file, or of one of its parts."""
     seen, declared = declared_of(bodies, header, whole)
     return next(contents(bodies, seen, header, declared))
 
@@ -86,21 +98,29 @@ def contents(
     header: Header | None,
     declared: DrawingDeclaration,
 ) -> Iterator[Content]:
-    """Yield what a drawing shows: with removed sections, and without them where they have no room."""
+    """Yield the content with removed sections, then without them for sheets that lack the room."""
     section, end = views(bodies, is_shaft=declared.is_shaft)
     parameters = declared.own(header.parameters if header else {})
     repeated = {name: spans_of(size, seen) for name, size in declared.sizes.items()}
+    seen = {body.name: _standing(seen[body.name], body) for body in bodies}
+    upright = [body for body in bodies if _is_upright(body)]
+    own = {body.name: seen[body.name] for body in upright}
     shown = [
-        *lengths(declared.sizes.values(), seen, section),
-        *measures(bodies, seen, section, end),
-        *standing([*seen.values()], section, end),
+        *lengths(declared.sizes.values(), own, section),
+        *measures(upright, own, section, end),
+        *standing([*own.values()], section, end),
     ]
-    features = None if is_assembly(bodies) else Features.of(_defined(declared, seen), end.frame)
-    removed = removed_sections(declared, parameters, bodies, seen, end)
+    removed = [
+        *removed_sections(declared, parameters, bodies, seen, end),
+        *cross_sections(declared, parameters, bodies, seen, end),
+    ]
     for some in ([removed] if removed else []) + [[]]:
+        cuts = [(one.height, one.leaning) for one in some]
+        features = None if is_assembly(bodies) else Features.of(_defined(declared, seen), end.frame, cuts)
         names = {name for one in some for name in one.names}
         rest = {name: text for name, text in parameters.items() if name not in names}
         dimensions, unseen = matched(rest, declared.sizes, shown, declared.limits)
+        unseen += _in_table_alone(parameters, dimensions, some, unseen)
         if features is not None:
             definition = Definition.of(features)
             for one in some:
@@ -109,8 +129,38 @@ def contents(
         yield Content(section, end, some, dimensions, unseen, features, repeated)
 
 
+def _is_upright(body: Body) -> bool:
+    """Return whether a part stands with its z axis along the shaft; bolts and dowels across it do not.
+
+    Those are dimensioned on their own sheets.
+    """
+    turn, _ = rigid(body.places[0])
+    return bool(turn[2, 2] > 1 - 1e-9)
+
+
+def _standing(seen: PartSurfaces, body: Body) -> PartSurfaces:
+    """Return the surfaces of a part, moved to its place if it is round about an axis away from the shaft."""
+    turn, shift = rigid(body.places[0])
+    rings = seen.about(Z)
+    if len(body.places) > 1 or not rings or hypot(*shift[:2]) < max(one.diameter for one in rings):
+        return seen
+    return seen.moved(turn, shift)
+
+
+def _in_table_alone(
+    parameters: Mapping[str, str],
+    dimensions: Sequence[Dimension],
+    removed: Sequence[RemovedSection],
+    unseen: Sequence[str],
+) -> list[str]:
+    """Return further parameters whose tolerances no dimension shows."""
+    drawn = [*dimensions, *(one for section in removed for one in section.dimensions)]
+    stated = {one.name for one in drawn if one.limits} | {*unseen}
+    return [name for name in toleranced_in(parameters) if name not in stated]
+
+
 def _defined(declared: DrawingDeclaration, seen: Mapping[str, PartSurfaces]) -> list[Surface]:
-    """Return the surfaces of the parts that carry parameters; others are like them, or mirrored."""
+    """Return the surfaces of the parts that carry parameters; the other parts equal or mirror these."""
     carriers = {
         part
         for size in declared.sizes.values()

@@ -36,7 +36,7 @@ _DIGITS = 4  # to which two lines or circles are the same one
 
 @dataclass(frozen=True)
 class Round:
-    """An arc from an angle on, counter-clockwise [degrees]; a turn of 360 is a circle."""
+    """An arc, counter-clockwise from its start angle [degrees]; a turn of 360 makes it a circle."""
 
     centre: Point
     radius: float
@@ -45,7 +45,7 @@ class Round:
 
     @property
     def is_whole(self) -> bool:
-        """Return whether it is a circle."""
+        """Return whether the arc is a full circle."""
         return self.turn >= 360 - 1e-6
 
     def at(self, angle: float) -> Point:
@@ -54,7 +54,7 @@ class Round:
         return self.centre[0] + self.radius * cos(turned), self.centre[1] + self.radius * sin(turned)
 
     def points(self) -> Polyline:
-        """Return the points along it, its ends and its outermost ones among them."""
+        """Return points along the arc, including its ends and its extreme points."""
         count = max(2, ceil(self.turn / _STEP))
         angles = {self.start + self.turn * i / count for i in range(count + 1)}
         quarters = range(ceil(self.start / 90), int((self.start + self.turn) // 90) + 1)
@@ -63,13 +63,13 @@ class Round:
 
 @dataclass(frozen=True)
 class Curve:
-    """A line through points; if it is an arc, which one."""
+    """A polyline, and the arc that it approximates if there is one."""
 
     points: Polyline
     arc: Round | None = None
 
     def moved(self, shift: Point) -> Curve:
-        """Return the line at another position."""
+        """Return the curve moved by a vector."""
         points = [(x + shift[0], y + shift[1]) for x, y in self.points]
         if self.arc is None:
             return Curve(points)
@@ -77,7 +77,7 @@ class Curve:
         return Curve(points, replace(self.arc, centre=centre))
 
     def vertices(self) -> list[Vertex]:
-        """Return the curve as corners with bulges, as DXF writes outlines."""
+        """Return the curve as corners with bulges, the form in which DXF writes outlines."""
         if self.arc is None:
             return [(x, y, 0.0) for x, y in self.points]
         halves = 2 if self.arc.turn > 180 else 1
@@ -88,7 +88,7 @@ class Curve:
 
 
 def curves_of(compounds: Iterable[Any], scale: float) -> list[Curve]:
-    """Return the edges of projections, their sizes multiplied by a scale."""
+    """Return the edges of projections as curves, scaled by a factor."""
     curves = []
     for compound in compounds:
         if compound is None or compound.IsNull():
@@ -102,7 +102,7 @@ def curves_of(compounds: Iterable[Any], scale: float) -> list[Curve]:
 
 
 def curve_of(adaptor: Any, size: float) -> Curve:
-    """Return a curve of the kernel in the plane of x and y, or seen along z."""
+    """Return a curve of the kernel as it appears when viewed along z."""
     kind = adaptor.GetType().name.rpartition("_")[2]
     first, last = adaptor.FirstParameter(), adaptor.LastParameter()
     if kind == "Line":
@@ -121,12 +121,12 @@ def curve_of(adaptor: Any, size: float) -> Curve:
 
 
 def rounded(arc: Round) -> Curve:
-    """Return an arc with its points."""
+    """Return an arc as a curve, with points along it."""
     return Curve(arc.points(), arc)
 
 
 def recognised(points: Polyline) -> Curve:
-    """Return a line of points, as a straight line or an arc if it is one."""
+    """Return a straight line or an arc if the points lie on one, otherwise a polyline."""
     one, other = points[0], points[-1]
     span = hypot(other[0] - one[0], other[1] - one[1])
     if span > _POINT and all(abs(_cross(one, other, p)) < 1e-5 * span * span for p in points[1:-1]):
@@ -142,7 +142,7 @@ def recognised(points: Polyline) -> Curve:
 
 
 def smoothed(points: Polyline) -> Polyline:
-    """Return more points on a smooth curve through these, where it has no corner."""
+    """Return the points and further ones on a smooth curve through them; leave corners unchanged."""
     places = np.asarray(points)
     away = np.diff(places, axis=0)
     sizes = np.hypot(away[:, 0], away[:, 1])
@@ -158,7 +158,10 @@ def smoothed(points: Polyline) -> Polyline:
 
 
 def joined(curves: Iterable[Curve], without: Sequence[Curve] = ()) -> list[Curve]:
-    """Return the pieces of each line or circle joined, without curves that others already show."""
+    """Return the curves with the pieces of each line or circle joined.
+
+    Stretches that the curves in `without` cover are omitted.
+    """
     lines, arcs, rest = _Spans(), _Spans(), []
     for curve, is_kept in [*((c, True) for c in curves), *((c, False) for c in without)]:
         if curve.arc is not None:
@@ -171,7 +174,7 @@ def joined(curves: Iterable[Curve], without: Sequence[Curve] = ()) -> list[Curve
 
 
 class _Spans:
-    """Stretches of lines and circles by what they lie on."""
+    """Stretches of lines and circles, grouped by the line or circle on which they lie."""
 
     def __init__(self) -> None:
         self.carriers: dict[tuple[float, ...], tuple[float, ...]] = {}
@@ -225,7 +228,7 @@ class _Spans:
 def _left(
     kept: list[tuple[float, float]], taken: list[tuple[float, float]], near: float
 ) -> list[tuple[float, float]]:
-    """Return the union of spans, without others."""
+    """Return the union of the kept spans minus the taken ones."""
     spans = _union(kept, near)
     for low, high in _union(taken, near):
         parts = [part for a, b in spans for part in ((a, min(b, low)), (max(a, high), b))]
@@ -244,7 +247,7 @@ def _union(spans: list[tuple[float, float]], near: float) -> list[tuple[float, f
 
 
 def outline(pieces: Sequence[Curve]) -> list[Vertex]:
-    """Return the pieces of a closed line as one, in any order and direction, as corners with bulges."""
+    """Return a closed outline as corners with bulges, from pieces in any order and direction."""
     left = [piece.vertices() for piece in pieces]
     line = left.pop(0)
     while left:
@@ -281,7 +284,7 @@ def _cross(a: Point, b: Point, p: Point) -> float:
 
 
 def _circle_through(a: Point, b: Point, c: Point) -> tuple[Point, float] | None:
-    """Return the centre and radius; None if the points lie on a line."""
+    """Return the centre and radius of the circle through three points; None if they are collinear."""
     double = 2 * _cross(a, b, c)
     if abs(double) < 1e-12:
         return None

@@ -11,6 +11,7 @@ from cad.catalogue import models
 from cad.drafting.title import TEXTURE, roughness
 from cad.header import Header
 from cad.model import CadModel
+from cad.pmi import on_faces
 from cad.surfaces import PartSurfaces, Size
 from cad.tolerances import Limits, carried, limits_in
 from templates.core.errors import InvalidInputs
@@ -18,7 +19,7 @@ from templates.core.errors import InvalidInputs
 
 @dataclass(frozen=True)
 class Control:
-    """A geometric tolerance of the faces of a dimension: its width [mm] and the datum to which it refers."""
+    """A geometric tolerance on the faces of a dimension: its width [mm] and the datum to which it refers."""
 
     parameter: str
     form: str
@@ -28,24 +29,24 @@ class Control:
 
 @dataclass(frozen=True)
 class DrawingDeclaration:
-    """The declaration of a model.
+    """The declaration of a model, as far as its drawing needs it.
 
-    A file of nobody, or of a team's model, which other machines lack, has its limits from its header alone.
+    If the model of a file is not installed here, only the limits in the file's header are known.
 
     Attributes
     ----------
     limits
         Limit deviations by parameter.
     datums
-        Letters of datums by parameter; in an assembly only of those to which a tolerance refers.
+        Letters of datums by parameter; in an assembly only those to which a tolerance refers.
     textures
         Greatest roughness Ra [µm] by parameter, where it is less than that of all other faces.
     sections
-        Removed sections by letter, in the words of `cad.drafting.removed_section`.
+        Removed sections by letter, in the format that `cad.drafting.removed_section` describes.
     sizes
         Dimensions of the solid with the faces that carry them, by parameter.
     is_part
-        Whether the sheet is that of one part of a model with several.
+        Whether the sheet shows one part of a model that has several.
     """
 
     is_shaft: bool = False
@@ -58,7 +59,7 @@ class DrawingDeclaration:
     is_part: bool = False
 
     def on(self, seen: Mapping[str, PartSurfaces]) -> DrawingDeclaration:
-        """Return what is declared of some of the parts alone."""
+        """Return the declarations that concern only the given parts."""
         kept = {
             name: Size(size, size.kind, *places)
             for name, size in self.sizes.items()
@@ -76,7 +77,7 @@ class DrawingDeclaration:
         )
 
     def own(self, parameters: Mapping[str, str]) -> Mapping[str, str]:
-        """Return the parameters of a sheet: of a part those that its faces carry."""
+        """Return the parameters to list on the sheet; for a part, only those that its faces carry."""
         if not self.is_part:
             return parameters
         return {name: text for name, text in parameters.items() if name in self.sizes}
@@ -85,7 +86,17 @@ class DrawingDeclaration:
     def of(
         header: Header | None, seen: Mapping[str, PartSurfaces], *, is_assembly: bool = False
     ) -> DrawingDeclaration:
-        """Return the declarations of the model of a STEP file, whose parts are seen by their names."""
+        """Return the declarations of the model of a STEP file.
+
+        Parameters
+        ----------
+        header
+            The header of the file, which names the model; None for a file without one.
+        seen
+            The surfaces of the parts by their names.
+        is_assembly
+            Whether the sheet shows an assembly.
+        """
         if header is None:
             return DrawingDeclaration()
         limits = limits_in(header)
@@ -94,6 +105,7 @@ class DrawingDeclaration:
             return DrawingDeclaration(limits=limits)
         carriers = carried(model)
         sizes = _sizes(model, header, seen)
+        limits = {name: limits[name] for name in on_faces(sizes) if name in limits and name in carriers}
         controls = tuple(_controls(model, limits))
         every = {one.datum for one in carriers.values()}
         shown = ({control.to for control in controls} if is_assembly else every) - {""}
@@ -115,7 +127,7 @@ class DrawingDeclaration:
 
 
 def _sizes(model: type[CadModel], header: Header, seen: Mapping[str, PartSurfaces]) -> dict[str, Size]:
-    """Return the dimensions that the faces of a solid carry; none for a file from another source."""
+    """Return the dimensions that the faces of the solid carry; none if the faces do not match the model."""
     try:
         read = model.from_quantities(header.parameters).dimensions(seen)
     except (InvalidInputs, LookupError):
@@ -124,7 +136,7 @@ def _sizes(model: type[CadModel], header: Header, seen: Mapping[str, PartSurface
 
 
 def _is_machined(size: Size, seen: Mapping[str, PartSurfaces]) -> bool:
-    """Return whether one tool machines the faces of a size: a diameter, or two planes."""
+    """Return whether one tool machines the faces of a size: a diameter, a sphere, or two planes."""
     if size.kind != "distance":
         return size.kind in ("diameter", "sphere")
     planes = {plane.face for one in seen.values() for plane in one.planes}

@@ -1,12 +1,13 @@
-"""Whether the dimensions of a sheet define its parts: nothing missing, nothing given twice (ISO 129-1).
+"""Decide whether the dimensions of a sheet define its parts completely and without repetition (ISO 129-1).
 
-Every face has stations: the position of a plane along its normal, the radius of a cylinder about the shaft,
-the axis of another one, the direction of what stands askew about the shaft. A dimension joins the stations
-between which it is drawn. The sheet is complete if the stations of each direction are connected; a dimension
-between two stations that are connected already closes a chain, and stands in brackets.
+Every face has stations: a plane has its position along its normal, a cylinder about the shaft its radius, any
+other cylinder the position of its axis, and a plane oblique to the centre lines its direction about the
+shaft. A dimension joins the two stations between which it is drawn. The sheet is complete if the stations of
+each direction are connected. A dimension between two stations that are already connected would close a chain,
+so it is shown in brackets.
 
-A drawing gives without numbers: features on a centre line, pairs on both sides of one, equal features (which
-are dimensioned once), holes evenly round their circle, fillets that touch their neighbours, right angles.
+Some relations need no number: features on a centre line, pairs placed symmetrically about one, equal features
+(dimensioned once), holes spaced evenly on their circle, fillets tangent to their neighbours, right angles.
 """
 
 from __future__ import annotations
@@ -34,7 +35,11 @@ AXIS: Station = ("round", 0.0)
 
 
 def station(direction: Direction, at: float) -> Station:
-    """Return a station; those on the axis are one, and angles lie within a turn."""
+    """Return the station at a coordinate.
+
+    All coordinates on the axis of the shaft give one station, and so do all directions of the centre lines.
+    Angles are reduced to one turn.
+    """
     at = round(at % 360 if direction == "turn" else at, 4) + 0.0
     if direction == "turn":
         return ("turn", 0.0) if at % 90 < CLEAR or 90 - at % 90 < CLEAR else ("turn", at)
@@ -43,13 +48,13 @@ def station(direction: Direction, at: float) -> Station:
 
 @dataclass
 class Definition:
-    """What must be defined on a sheet, and what its dimensions have defined so far.
+    """The stations and sizes that a sheet must define, and those that its dimensions have defined so far.
 
     Attributes
     ----------
     needed, optional
-        Stations in words; the optional ones are of holes, which either two coordinates or a circle and an
-        angle locate.
+        Stations with their descriptions; the optional ones belong to holes, which either two coordinates or a
+        circle and an angle locate.
     centres
         Positions along the shaft at which the section has a centre line.
     """
@@ -68,7 +73,7 @@ class Definition:
 
     @staticmethod
     def of(features: Features) -> Definition:
-        """Return what the faces of parts need, with no dimension yet."""
+        """Return the definition that the features require, without any dimension yet."""
         made = Definition(features)
         every: dict[Direction, Words] = {
             "along": features.along,
@@ -91,7 +96,7 @@ class Definition:
         return made
 
     def add(self, measure: Measure) -> bool:
-        """Add a dimension; return whether it says anything new, and closes no chain."""
+        """Add a dimension; return whether it defines anything new instead of closing a chain."""
         span = self.span(measure)
         if measure.sort in ("width", "gap"):
             self.widths.add(round(measure.value, 4))
@@ -112,6 +117,8 @@ class Definition:
 
     def _adds_own(self, measure: Measure) -> bool:
         sort = measure.sort
+        if sort == "gap":
+            return self._adds_wall(measure)
         if sort not in ("diameter", "radius", "angle", "chamfer", "width") or self.is_pitch_circle(measure):
             return False
         own: Own = (sort, round(measure.value, 4))
@@ -121,19 +128,38 @@ class Definition:
         self.given.add(own)
         return is_new
 
+    def _adds_wall(self, measure: Measure) -> bool:
+        """Return whether a wall about an axis beside the shaft gives one diameter from another."""
+        low, high = sorted(point[1] for point in measure.points)
+        holes = self.features.holes
+        inner, outer = (
+            {
+                (one.axis, round(one.diameter, 4))
+                for one in holes
+                if abs(one.axis[1] + one.diameter / 2 - at) < CLEAR
+            }
+            for at in (low, high)
+        )
+        for axis, diameter in inner:
+            both = {("diameter", diameter), *(("diameter", d) for other, d in outer if other == axis)}
+            if len(both) == 2 and len(new := both - self.given) == 1:
+                self.given |= new  # type: ignore[arg-type]
+                return True
+        return False
+
     def is_pitch_circle(self, measure: Measure) -> bool:
         """Return whether a diameter is that of a circle about the shaft through the axes of holes."""
         on = (measure.sort, measure.form, measure.points[0]) == ("diameter", "circle", (0.0, 0.0))
         return on and any(dist(hole.axis, measure.points[1]) < CLEAR for hole in self.features.holes)
 
     def span(self, measure: Measure) -> tuple[Station, Station] | None:
-        """Return the two stations that a dimension joins; None if it is a feature's own size."""
+        """Return the two stations that a dimension joins; None if it gives the size of a feature."""
         points = measure.points
         if measure.form == "angle":
             if measure.place != "end" or hypot(*points[0]) > CLEAR:
                 return None
             one, other = (degrees(atan2(y, x)) for x, y in points[1:])
-            return station("turn", one), station("turn", other)
+            return self._ray(one), self._ray(other)
         if measure.form in ("circle", "arc"):
             is_about = measure.place == "end" and hypot(*points[0]) < CLEAR
             radius = measure.value / (2 if measure.sort == "diameter" else 1)
@@ -148,12 +174,18 @@ class Definition:
             return self._ends("up", 0.0, high) if abs(low + high) < CLEAR else None
         return self._ends("up" if along else "across", low, high)
 
+    def _ray(self, turn: float) -> Station:
+        """Return the station of a direction, or the opposite one on its line if only that is needed."""
+        here, opposite = station("turn", turn), station("turn", turn + 180)
+        is_known = here in self.needed or here in self.optional
+        return opposite if opposite in self.needed and not is_known else here
+
     def _ends(self, direction: Direction, low: float, high: float) -> tuple[Station, Station] | None:
         one, other = self.known(direction, low), self.known(direction, high)
         return (one, other) if one and other and one != other else None
 
     def known(self, direction: Direction, at: float) -> Station | None:
-        """Return the station at a coordinate; for a cylinder about the shaft, the station of its radius."""
+        """Return the known station at a coordinate, perhaps that of the radius of a cylinder."""
         found = [station(direction, at)]
         if direction in ("across", "up"):
             found.append(station("round", abs(at)))
@@ -165,7 +197,7 @@ class Definition:
         return here[0] if here else None
 
     def is_symmetric(self, one: Station, other: Station) -> bool:
-        """Return whether two stations lie on both sides of a centre line."""
+        """Return whether two stations are symmetric about a centre line."""
         if one[0] == "turn":
             return other[0] == "turn" and self._centre_of(one[1], other[1]) is not None
         if one[0] == "along":
@@ -174,7 +206,7 @@ class Definition:
         return one[0] == other[0] != "round" and abs(one[1] + other[1]) < CLEAR
 
     def _centre_of(self, one: float, other: float) -> Station | None:
-        """Return the station of the line midway between two directions, if it is drawn."""
+        """Return the station of the bisector of two directions, if the drawing shows that line."""
         middle = (one + other) / 2
         for turn in (0, 90, 180, 270):
             here = station("turn", middle + turn)
@@ -183,7 +215,7 @@ class Definition:
         return None
 
     def settle(self) -> None:
-        """Let the pairs about centre lines locate their members, once other dimensions have not."""
+        """Locate the members of symmetric pairs, whose distance is dimensioned, from their centre lines."""
         before = -1
         while before != len({self._root(one) for one in [*self.needed, AXIS]}):
             before = len({self._root(one) for one in [*self.needed, AXIS]})
@@ -217,11 +249,11 @@ class Definition:
                     self.join(other, zero)
 
     def is_mirrored(self, one: Station, other: Station) -> bool:
-        """Return whether two directions are mirrored at a centre line of the end view."""
+        """Return whether two directions mirror each other about a centre line of the end view."""
         return station("turn", (one[1] + other[1]) / 2) == ("turn", 0.0)
 
     def _about_located(self, one: Station, other: Station) -> None:
-        """Locate a pair of directions about one that is located, as the flanks of equal counterweights."""
+        """Locate two directions if their bisector is located, as for the flanks of equal counterweights."""
         middle = one[1] + ((other[1] - one[1] + 180) % 360 - 180) / 2
         for turn in (0, 180):
             if self.joined(station("turn", middle + turn), ("turn", 0.0)):
@@ -242,7 +274,7 @@ class Definition:
         return one
 
     def is_located(self, hole: Hole) -> bool:
-        """Return whether two coordinates, or a circle and an angle, give the axis of a hole."""
+        """Return whether the axis of a hole is located, by two coordinates or by a circle and an angle."""
         across, up, around, turn = hole_stations(hole)
         zero: Station = ("turn", 0.0)
         if self.joined(around, AXIS) and (self.joined(turn, zero) or self.is_spaced(hole)):
@@ -250,7 +282,10 @@ class Definition:
         return self.joined(across, AXIS) and self.joined(up, AXIS)
 
     def is_spaced(self, hole: Hole) -> bool:
-        """Return whether a hole is one of at least three evenly round their circle, one on a centre line."""
+        """Return whether a hole belongs to at least three that are evenly spaced on a circle.
+
+        One of them, or the middle between two of them, must also lie on a located direction or a centre line.
+        """
         alike = [one for one in self.features.holes if one.is_like(hole)]
         turns = sorted({round(one.turn % 360, 3) for one in alike})
         step = 360 / len(turns)
@@ -260,7 +295,7 @@ class Definition:
         return len(turns) > 2 and even and (known or mirrored)
 
     def components(self, direction: Direction) -> list[list[Station]]:
-        """Return the groups of stations of a direction that nothing connects, the located one first."""
+        """Return the connected groups of stations of one direction, the located group first."""
         groups = defaultdict[Station, list[Station]](list)
         for one in self.needed:
             if one[0] == direction:
@@ -271,11 +306,11 @@ class Definition:
         return found if direction == "along" or (ordered and ordered[0][0] == origin) else [[], *found]
 
     def has_own(self, own: Own) -> bool:
-        """Return whether a feature's size is given: of a round end also by the width that it closes."""
+        """Return whether the size of a feature is given; the width of a slot also gives its round ends."""
         return own in self.given or (own[0] == "width" and own[1] in self.widths)
 
     def missing(self) -> Iterator[str]:
-        """Yield in words what no dimension gives."""
+        """Yield a description of each size and position that no dimension gives."""
         for own, words in self.own.items():
             if not self.has_own(own):
                 yield words
@@ -289,7 +324,7 @@ class Definition:
 
 
 def hole_stations(hole: Hole) -> tuple[Station, Station, Station, Station]:
-    """Return the stations of a hole: level, upright, round, by angle."""
+    """Return the stations of a hole: horizontal and vertical position, distance from the shaft, and angle."""
     x, y = hole.axis
     return (
         station("across", x), station("up", y), station("round", hypot(x, y)), station("turn", hole.turn)
@@ -297,6 +332,6 @@ def hole_stations(hole: Hole) -> tuple[Station, Station, Station, Station]:
 
 
 def nearest(groups: Sequence[Sequence[Station]], placed: Sequence[Station]) -> tuple[Station, Station] | None:
-    """Return the nearest pair of a located station and one of another group."""
+    """Return the closest pair of stations, one of them located and the other from one of the groups."""
     pairs = ((a, b) for a in placed for group in groups for b in group)
     return min(pairs, key=lambda pair: (abs(pair[0][1] - pair[1][1]), pair), default=None)

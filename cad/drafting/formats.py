@@ -1,4 +1,4 @@
-"""Sheets of ISO 5457 (sizes of ISO 216), landscape, and their areas [mm on paper]."""
+"""Landscape sheets of ISO 5457 with the sizes of ISO 216, and the areas on each sheet [mm on paper]."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ COLUMN = 104.0  # of the table of parameters
 
 @dataclass(frozen=True)
 class Format:
-    """A sheet by its name and its size."""
+    """A sheet with its name and its size."""
 
     name: str
     width: float
@@ -21,12 +21,12 @@ class Format:
 
     @property
     def area(self) -> Rectangle:
-        """Return the area of the views and their dimensions."""
+        """Return the area for the views and their dimensions."""
         return LEFT, EDGE + HEIGHT, self.width - EDGE - COLUMN, self.height - EDGE
 
     @property
     def room(self) -> tuple[float, float]:
-        """Return the width and height of that area."""
+        """Return the width and height of the area for the views."""
         left, low, right, high = self.area
         return right - left, high - low
 

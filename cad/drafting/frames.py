@@ -1,4 +1,4 @@
-"""Frames of geometric tolerances (ISO 1101): sign, width and datum in cells."""
+"""Frames of geometric tolerances (ISO 1101): symbol, width and datum in cells."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from cad.drafting.symbols import Symbol, geometric
 
 @dataclass(frozen=True)
 class Frame:
-    """A frame with letters of a height [mm on paper]; it is twice as high as they are."""
+    """A tolerance frame, twice as high as its letters [mm on paper]."""
 
     form: str
     amount: float  # [mm]
@@ -21,27 +21,27 @@ class Frame:
 
     @property
     def text(self) -> str:
-        """Return the width of the tolerance in words."""
+        """Return the tolerance width as text."""
         return f"{self.amount:.6f}".rstrip("0").rstrip(".")
 
     @property
     def height(self) -> float:
-        """Return its height [mm on paper]."""
+        """Return the height of the frame [mm on paper]."""
         return 2 * self.letters
 
     @property
     def cells(self) -> Sequence[float]:
-        """Return the widths of its cells [mm on paper]."""
+        """Return the widths of the cells [mm on paper]."""
         written = width_of(self.text, self.letters) + 2.0
         return [self.height, written, *([self.height] if self.datum else [])]
 
     @property
     def width(self) -> float:
-        """Return its width [mm on paper]."""
+        """Return the width of the frame [mm on paper]."""
         return sum(self.cells)
 
     def draw(self, page: Page, left: float, low: float) -> None:
-        """Draw it with its lower left corner at a place of the paper."""
+        """Draw the frame with its lower left corner at a point on the paper."""
         high, right = low + self.height, left + self.width
         places = [left + sum(self.cells[:i]) for i in range(len(self.cells) + 1)]
         lines = [[(left, low), (right, low)], [(left, high), (right, high)]]

@@ -1,4 +1,4 @@
-"""Hatch closed outlines by lines at 45°, for programs that do not know HATCH."""
+"""Hatch closed outlines with lines at 45°, for output formats that have no hatch entity."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from cad.drafting.curves import Point, Polyline
 def hatch(
     outlines: Sequence[Polyline], apart: float, *, falling: bool = False
 ) -> Iterator[tuple[Point, Point]]:
-    """Yield the lines at 45° within closed outlines; holes among them stay empty."""
+    """Yield hatching lines at 45° within closed outlines; an outline inside another one is a hole."""
     turn = np.array([[1.0, 1.0], [-1.0, 1.0]]) / np.sqrt(2)  # what slopes becomes level
     turned = [np.asarray(line) * ([-1, 1] if falling else [1, 1]) @ turn.T for line in outlines]
     low = min(line[:, 1].min() for line in turned)

@@ -1,4 +1,4 @@
-"""The text of a dimension: symbols, number, tolerance as a zone and as deviations (ISO 129-1)."""
+"""The text of a dimension: symbols, number, tolerance class and deviations (ISO 129-1)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _STACK = re.compile(r"(?s)(.*)\{\\H0\.7x;\\S([^^]*)\^ ([^;]*);\}(.*)")
 
 @dataclass(frozen=True)
 class Label:
-    """The words of a dimension; `<>` in `text` is its number."""
+    """The text of a dimension; `<>` in `text` stands for the number."""
 
     text: str
     number: str
@@ -25,23 +25,26 @@ class Label:
 
     @property
     def mtext(self) -> str:
-        """Return the text as DXF needs it: deviations one above the other."""
+        """Return the text in the format of DXF, with the deviations one above the other."""
         stack = f" {{\\H{SMALL}x;\\S{self.upper}^ {self.lower};}}" if self.upper else ""
         return f"{self.text}{stack}"
 
     def width(self, height: float) -> float:
-        """Return their width, for letters of that height."""
+        """Return the width of the text for letters of a given height."""
         deviations = max(width_of(self.upper, height), width_of(self.lower, height)) * SMALL
         gap = width_of(" ", height) if self.upper else 0.0
         return width_of(self.text.replace("<>", self.number), height) + deviations + gap
 
     def height(self, height: float) -> float:
-        """Return their height, for letters of that height."""
+        """Return the height of the text for letters of a given height."""
         return 2.4 * SMALL * height if self.upper else height
 
 
 def label_of(dimension: Dimension) -> Label:
-    """Return the label: Ø before a diameter, the count of a repeated size, brackets for reference sizes."""
+    """Return the label of a dimension.
+
+    A diameter has the prefix Ø, a repeated size its count, and a reference size stands in brackets.
+    """
     measure = dimension.measure
     several = f"{measure.count}×" if measure.count > 1 else ""
     is_round = measure.form in ("circle", "arc")  # these have their signs from the DIMENSION
@@ -66,6 +69,6 @@ def label_of(dimension: Dimension) -> Label:
 
 
 def read_stack(mtext: str) -> tuple[str, str, str]:
-    """Return the words of a dimension in DXF, without its deviations; and these."""
+    """Return the text of a DXF dimension without its deviations, then the upper and the lower deviation."""
     match = _STACK.fullmatch(mtext)
     return (match[1].rstrip() + match[4], match[2], match[3]) if match else (mtext, "", "")

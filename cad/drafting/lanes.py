@@ -1,4 +1,4 @@
-"""Choose the side of a view for a dimension: in lanes beside the view, or at a position within it."""
+"""Choose the side of a view for each dimension: in lanes beside the view, or at a position within it."""
 
 from __future__ import annotations
 
@@ -17,9 +17,10 @@ Side = list[Dimension]
 
 @dataclass(frozen=True)
 class Lane:
-    """The dimensions on one side of a view, the short ones nearest to it.
+    """The dimensions on one side of a view, the shortest nearest to the view.
 
-    `along` is the coordinate that they measure, `edge` that of the view's side, `out` the direction away.
+    `along` is the index of the coordinate that they measure, `edge` the position of that side of the view,
+    and `out` the sign of the direction away from the view.
     """
 
     dimensions: Side
@@ -31,7 +32,7 @@ class Lane:
 
 @dataclass(frozen=True)
 class Lanes:
-    """Dimensions by the side of the view on which they stand."""
+    """Dimensions, grouped by the side of the view on which they stand."""
 
     section: View
     end: View
@@ -46,7 +47,7 @@ class Lanes:
 
     @staticmethod
     def sorted(dimensions: Iterable[Dimension], section: View, end: View) -> Lanes:
-        """Return every dimension on the side nearest to its feature."""
+        """Return the dimensions, each on the side nearest to its feature."""
         sides = Lanes(section, end, [], [], [], [], [], [], [], [])
         (left, low), (right, high) = section.box
         middle = (left + right) / 2, (low + high) / 2
@@ -57,7 +58,7 @@ class Lanes:
         return sides
 
     def _side(self, one: Dimension, middle: Point) -> tuple[Side, int]:
-        """Return the side of a dimension: below or left (-1), above or right (1), or neither."""
+        """Return the side of a dimension and its sign: -1 below or left, 1 above or right, 0 for neither."""
         measure = one.measure
         place = sum(x for x, _ in measure.points) / len(measure.points)
         match measure.form, measure.place:
@@ -73,7 +74,7 @@ class Lanes:
         return self.local, 0
 
     def _is_high(self, one: Dimension) -> bool:
-        """Return whether the width in the end view is nearer to the top of that view."""
+        """Return whether a width in the end view is nearer to the top of that view than to its bottom."""
         (_, low), (_, high) = self.end.box
         reaches = [_edge_at(one, self.end, number) for number in (0, 1)]
         tops, feet = [high - end for _, end in reaches], [start - low for start, _ in reaches]
@@ -87,7 +88,7 @@ class Lanes:
         return len(self.left), len(self.right), len(self.beyond), min(below, 4), above
 
     def sides(self) -> Iterator[Lane]:
-        """Yield every side that has dimensions."""
+        """Yield every side with its dimensions."""
         (left, low), (right, high) = self.section.box
         (_, end_low), (end_right, end_high) = self.end.box
         every = (
@@ -115,9 +116,9 @@ def _from_its_edges(one: Dimension, view: View, out: int) -> Dimension:
 
 
 def _edge_at(one: Dimension, view: View, number: int) -> tuple[float, float]:
-    """Return the extent of edges or axes through a point of a dimension, across its direction.
+    """Return the range that edges or axes through a point of a dimension cover across the dimension.
 
-    A diameter uses only those that contain its point, because others may end at the foot of a circle.
+    For a diameter only edges that contain its point count, because others may belong to the foot of a circle.
     """
     along, point = int(one.measure.form == "up"), one.measure.points[number]
     at, across = point[along], point[1 - along]

@@ -1,6 +1,6 @@
-"""Width of letters: an upper bound over the fonts in which browsers and typesetters show a drawing.
+"""Upper bounds of text widths over the fonts in which browsers and typesetters show a drawing.
 
-The widths are those of DejaVu Sans, which is wider than Inter, Liberation Sans and Arial; the ISO lettering
+The widths are those of DejaVu Sans, which is wider than Inter, Liberation Sans and Arial. The ISO lettering
 of CAD programs is narrower than all of them.
 """
 
@@ -26,12 +26,12 @@ _OTHER = 1.0
 
 
 def width_of(text: str, height: float) -> float:
-    """Return the width of a line of letters of a given height, in the unit of the height."""
+    """Return the width of a line of text, in the unit in which the letter height is given."""
     return sum(_letter(sign) for sign in text) * SIZE * height
 
 
 def clipped(text: str, width: float, height: float) -> str:
-    """Return a text as one line of at most this width; omitted text shows as `…`."""
+    """Return a text as one line of at most the given width; `…` replaces omitted text."""
     line = "".join(sign if sign.isprintable() else " " for sign in text)
     if width_of(line, height) <= width:
         return line

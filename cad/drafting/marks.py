@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from math import hypot
 
-from cad.drafting.curves import Point
+from cad.drafting.curves import Curve, Point, joined
 from cad.drafting.dimension_layout import PlacedDimension
 from cad.drafting.letter_width import width_of
 from cad.drafting.page import Page
@@ -53,8 +53,15 @@ def centre_lines(section: View, end: View, bodies: Sequence[Body], plan: Plan) -
     own = [*shaft[1:], *_distinct(of_end)]
     across = _distinct(_longer(axis, over) for axis in end.axes)
     own += [axis for axis in across if not any(_on_one_line(axis, other) for other in own)]
-    moved = [(_right(a, plan.beside), _right(b, plan.beside)) for a, b in own]
-    return Centres([shaft[0], *axes, *crosses, *moved], [((plan.beside, 0.0), radius) for radius in pitch])
+    moved = [(_right(a, plan.beside), _right(b, plan.beside)) for a, b in _beside(own, end)]
+    lines = [*_beside([shaft[0], *axes, *crosses], section), *moved]
+    return Centres(lines, [((plan.beside, 0.0), radius) for radius in pitch])
+
+
+def _beside(lines: Sequence[Segment], view: View) -> list[Segment]:
+    """Return centre lines, each drawn once, where no outline covers them (ISO 128-2)."""
+    curves = joined([Curve([*line]) for line in lines], view.visible)
+    return [(one.points[0], one.points[-1]) for one in curves if one.arc is None and len(one.points) == 2]
 
 
 def pitch_circles(placed: Sequence[PlacedDimension]) -> list[tuple[Point, float]]:
@@ -85,7 +92,7 @@ def _axes(view: View, bodies: Sequence[Body], over: float) -> Iterator[Segment]:
 
 
 def _middles(view: View, plan: Plan) -> dict[Point, float]:
-    """Return the middles of circles that are not the shaft's, with the largest radius about each."""
+    """Return the centres of circles other than the shaft's, each with the largest radius about it."""
     radii: dict[Point, float] = {}
     for circle in view.circles:
         middle = round(circle.centre[0], 4) + 0.0, round(circle.centre[1], 4) + 0.0
@@ -95,7 +102,7 @@ def _middles(view: View, plan: Plan) -> dict[Point, float]:
 
 
 def _crosses(view: View, plan: Plan, over: float) -> Iterator[Segment]:
-    """Yield two lines through the middle of every circle."""
+    """Yield a horizontal and a vertical line through the centre of every circle."""
     for (x, y), radius in _middles(view, plan).items():
         reach = radius + min(over, radius)
         yield (x - reach, y), (x + reach, y)
@@ -103,7 +110,7 @@ def _crosses(view: View, plan: Plan, over: float) -> Iterator[Segment]:
 
 
 def _pitched(view: View, plan: Plan, over: float) -> tuple[list[float], Iterator[Segment]]:
-    """Yield the pitch circles of holes around the shaft, with centre lines at the holes."""
+    """Return the radii of pitch circles about the shaft, and the centre lines of all holes."""
     middles = _middles(view, plan)
     away = Counter(round(hypot(*middle), 3) for middle in middles)
     pitch = [size for size, count in away.items() if count > 2 and size > 0]
@@ -120,7 +127,7 @@ def _pitched(view: View, plan: Plan, over: float) -> tuple[list[float], Iterator
 
 
 def _longer(segment: Segment, over: float) -> Segment:
-    """Return a segment with both ends so far beyond its own."""
+    """Return a segment that is extended by the same length at both ends."""
     (x, y), (u, v) = segment
     size = hypot(u - x, v - y) or 1.0
     a, b = (u - x) / size * over, (v - y) / size * over
@@ -135,7 +142,7 @@ def _on_one_line(one: Segment, other: Segment) -> bool:
 
 
 def _distinct(segments: Iterable[Segment]) -> list[Segment]:
-    """Return each line once, and of very many only the first."""
+    """Return each line once, up to a limit on their number."""
     seen: dict[tuple[float, ...], Segment] = {}
     for one, other in segments:
         ends = sorted((one, other))
@@ -148,9 +155,9 @@ def _right(point: Point, away: float) -> Point:
 
 
 def cutting_line(page: Page, section: View, end: View, room: Room) -> None:
-    """Draw the line along which a section is cut, in the end view: thick ends, arrows and letters.
+    """Draw the cutting line of the section in the end view, with thick ends, arrows and letters.
 
-    The viewer is to the right of the end view: the arrows point left, as in first-angle projection.
+    The viewer is to the right of the end view, so the arrows point left, as in first-angle projection.
     """
     if not section.cut:
         return
@@ -169,7 +176,7 @@ def cutting_line(page: Page, section: View, end: View, room: Room) -> None:
 
 
 def section_label(page: Page, section: View, room: Room) -> None:
-    """Draw the label A–A over the section, above other texts."""
+    """Draw the label A–A above the section, clear of other texts."""
     if not section.cut:
         return
     (left, _), (right, high) = section.box

@@ -23,6 +23,7 @@ Place = Literal["section", "end"]
 
 _CLEAR = 1e-6  # [mm], and as the sine of an angle
 _ARC = 1e-5  # [mm]: how near to its surface an edge of the section lies
+_ECCENTRIC = 0.05  # between axes that enclose a wall, as a share of the inner diameter
 _MOST_LEVELS = 14  # planes across one axis; drawings of more would not be read
 
 
@@ -30,9 +31,10 @@ _MOST_LEVELS = 14  # planes across one axis; drawings of more would not be read
 class Measure:
     """A size that a view shows.
 
-    `across` lies level between two points, `up` upright, `aligned` along them; `circle` and `arc` are given
-    by centre and a point on them, `angle` by its corner and a point on each leg. `first` and `second` are the
-    faces between which it is taken; from an axis, and of a diameter, there are only the first.
+    The form `across` is horizontal, `up` vertical, `aligned` parallel to the line between its two points. The
+    points of a `circle` or an `arc` are its centre and a point on it; those of an `angle` are its corner and
+    a point on each leg. `first` and `second` are the faces between which the size is measured; `second` is
+    empty for a diameter and for a distance from an axis.
     """
 
     sort: Sort
@@ -52,12 +54,15 @@ def measures(
     end: View,
     most: int = _MOST_LEVELS,
 ) -> list[Measure]:
-    """Return every size that the views show; of more planes along the shaft than `most` those at its ends."""
+    """Return every size that the views show.
+
+    If there are more than `most` planes across the shaft, the first of them and the last are used.
+    """
     results: list[Measure] = []
     for one in seen.values():
         results += _of_cylinders(one, section, end)
         results += _of_planes(one, section, end, most)
-        results += _of_flanks(one, end)
+        results += flank_angles(one, end)
     results += _of_axes([c for one in seen.values() for c in one.cylinders if c.along(Z)], section)
     standing = list(_standing(bodies, seen))
     results += _of_arcs(section, standing, {name: one.count for name, one in seen.items()})
@@ -66,7 +71,7 @@ def measures(
 
 
 def lengths(sizes: Iterable[Size], seen: Mapping[str, PartSurfaces], section: View) -> Iterator[Measure]:
-    """Yield the lengths along the shaft that faces carry, at each of their places."""
+    """Yield the lengths between faces along the shaft, at each place where a length occurs."""
     levels = {plane.face: plane.point.z for one in seen.values() for plane in one.planes if plane.along(Z)}
     for size in sizes:
         for place in size.places if size.kind == "distance" else ():
@@ -76,7 +81,7 @@ def lengths(sizes: Iterable[Size], seen: Mapping[str, PartSurfaces], section: Vi
 
 
 def _standing(bodies: Sequence[Body], seen: Mapping[str, PartSurfaces]) -> Iterator[Surface]:
-    """Yield every surface at the positions of its part."""
+    """Yield every surface at each position of its part."""
     for body in bodies:
         for place in body.places:
             moved = rigid(place)
@@ -89,13 +94,15 @@ def _of_cylinders(seen: PartSurfaces, section: View, end: View) -> Iterator[Meas
         if cylinder.along(Z):
             turned = cylinder.turned(Z)
             yield from _lengthwise(turned, section, end, seen.count * alike(turned, seen))
-            about += [turned] if cylinder.about(Z) else []
+            about += [turned] if _within(cylinder, section.frame.towards) else []
         elif _within(cylinder, section.frame.towards):
             yield _drilled(cylinder, section, seen.count)
     for one, other in combinations(about, 2):
         inner, outer = sorted((one, other), key=lambda cylinder: cylinder.diameter)
-        low, high = inner.diameter / 2, outer.diameter / 2
-        ends = [_edge_at(section, c.diameter / 2, c.reach) for c in (inner, outer)]
+        if one.point.cross(Z).sub(other.point.cross(Z)).Length > _ECCENTRIC * inner.diameter:
+            continue
+        low, high = (section.frame.flat(c.point)[1] + c.diameter / 2 for c in (inner, outer))
+        ends = [_edge_at(section, radius, c.reach) for radius, c in ((low, inner), (high, outer))]
         if high - low > _CLEAR and ends[0] is not None and ends[1] is not None:
             points = ((ends[0], low), (ends[1], high))
             yield Measure("gap", high - low, "section", "up", points, 1, on(inner), on(outer))
@@ -144,7 +151,7 @@ def on(*surfaces: Surface) -> frozenset[Face]:
 
 
 def _edge_at(section: View, v: float, reach: tuple[float, float]) -> float | None:
-    """Return the middle of an edge of the section at that height within a reach along the shaft."""
+    """Return the middle of the longest edge of the section at a height, within a range along the shaft."""
     level = [
         (min(a[0], b[0]), max(a[0], b[0])) for a, b in section.edges if abs(a[1] - v) + abs(b[1] - v) < 1e-4
     ]
@@ -156,7 +163,7 @@ def _edge_at(section: View, v: float, reach: tuple[float, float]) -> float | Non
 
 
 def _on_circle(view: View, centre: Point, radius: float) -> Point | None:
-    """Return a point of a visible line on a circle, beside the middle of its longest visible run."""
+    """Return a point on the longest visible run of a circle, away from the middle of the run."""
     runs = [
         [p for p in curve.points if abs(hypot(p[0] - centre[0], p[1] - centre[1]) - radius) < 1e-4]
         for curve in view.visible
@@ -166,12 +173,12 @@ def _on_circle(view: View, centre: Point, radius: float) -> Point | None:
 
 
 def _within(cylinder: Surface, normal: Vector) -> bool:
-    """Return whether the axis is in the plane of the section."""
+    """Return whether the axis of a cylinder lies in the plane of the section."""
     return abs(cylinder.point.dot(normal)) < _CLEAR and abs(cylinder.direction.dot(normal)) < _CLEAR
 
 
 def _drilled(cylinder: Surface, section: View, count: int) -> Measure:
-    """Return the diameter of a drilling in the plane of the section, at its outer mouth."""
+    """Return the diameter of a drilling in the plane of the section, measured at its outer mouth."""
     flat, away = section.frame.flat(cylinder.point), section.frame.flat(cylinder.direction)
     start = cylinder.point.dot(cylinder.direction)
     reach = max(cylinder.reach, key=abs) - start
@@ -193,6 +200,11 @@ def _of_planes(seen: PartSurfaces, section: View, end: View, most: int) -> Itera
     levels = seen.levels(Z)
     for low, high in _spans(levels if len(levels) <= most else [*levels[: most - 1], levels[-1]]):
         yield length_between(seen, low, high, section)
+    yield from plane_widths(seen, end)
+
+
+def plane_widths(seen: PartSurfaces, end: View) -> Iterator[Measure]:
+    """Yield the distances between planes along the shaft, level or upright in the end view."""
     for axis in (X, Y):
         right, up = end.frame.flat(axis)
         sign = right + up  # one of them is 0
@@ -209,7 +221,7 @@ def _of_planes(seen: PartSurfaces, section: View, end: View, most: int) -> Itera
 
 
 def _spans(levels: Sequence[float]) -> list[tuple[float, float]]:
-    """Yield the spans from each level to the next, between mirrored levels, and the whole."""
+    """Yield the spans between adjacent levels, between mirrored levels, and over all levels."""
     ends = (levels[0], levels[-1]) if levels else ()
     return [
         (low, high)
@@ -223,13 +235,13 @@ def _pairs(levels: Sequence[float]) -> Iterator[tuple[tuple[int, int], tuple[flo
 
 
 def foot(section: View, z: float) -> float:
-    """Return the lowest point of the section at that place along the shaft."""
+    """Return the lowest point of the section at a position along the shaft."""
     ends = [p[1] for edge in section.edges for p in edge if abs(p[0] - z) < 1e-4]
     return min(ends, default=section.box[0][1])
 
 
 def _of_axes(cylinders: Iterable[Surface], section: View) -> Iterator[Measure]:
-    """Yield the distances of axes parallel to the shaft, in the section, from the shaft's own."""
+    """Yield the distances from the shaft's axis to the parallel axes that lie in the section."""
     heights = defaultdict[float, list[Surface]](list)
     for cylinder in cylinders:
         if _within(cylinder, section.frame.towards):
@@ -242,7 +254,7 @@ def _of_axes(cylinders: Iterable[Surface], section: View) -> Iterator[Measure]:
 
 
 def _of_arcs(section: View, standing: Sequence[Surface], counts: Mapping[str, int]) -> Iterator[Measure]:
-    """Yield the arcs of the section: of balls, of fillets, and of cylinders that are cut across."""
+    """Yield the arcs of the section: those of balls, fillets, and cylinders seen end-on."""
     for arc in section.arcs:
         points = (arc.centre, arc.middle)
         faces = on(*(one for one in standing if _is_cut_in(one, arc, section.frame)))
@@ -257,7 +269,7 @@ def _of_arcs(section: View, standing: Sequence[Surface], counts: Mapping[str, in
 
 
 def _is_cut_in(surface: Surface, arc: Arc, frame: Frame) -> bool:
-    """Return whether a surface is cut in an arc by the plane of the section."""
+    """Return whether the plane of the section cuts a surface along an arc."""
     if abs(surface.diameter / 2 - arc.radius) > _CLEAR:
         return False
     x, y = frame.flat(surface.point)
@@ -270,7 +282,7 @@ def _is_cut_in(surface: Surface, arc: Arc, frame: Frame) -> bool:
 
 
 def _of_slopes(section: View, standing: Sequence[Surface]) -> Iterator[Measure]:
-    """Yield the angles of sloping edges of the section against a plane across the shaft."""
+    """Yield the angles between sloping edges of the section and a plane across the shaft."""
     planes = [one for one in standing if one.diameter == 0]
     ends = [sorted((a, b), key=lambda point: point[1]) for a, b in section.edges]
     sloping = [(a, b) for a, b in ends if abs(b[0] - a[0]) > _CLEAR < b[1] - a[1]]
@@ -286,13 +298,14 @@ def _of_slopes(section: View, standing: Sequence[Surface]) -> Iterator[Measure]:
 
 
 def _holds(plane: Surface, point: Point, frame: Frame) -> bool:
-    """Return whether a plane goes through a point of a view whose plane contains the origin."""
+    """Return whether a plane contains a point of a view, placed in the view plane through the origin."""
     at = frame.right * point[0] + frame.up * point[1]
     return abs((at - plane.point).dot(plane.direction)) < _ARC
 
 
-def _of_flanks(seen: PartSurfaces, end: View) -> Iterator[Measure]:
-    """Yield the angles between planes through the shaft's axis, on the side of the material."""
+def flank_angles(seen: PartSurfaces, end: View) -> Iterator[Measure]:
+    """Yield the angles between planes through the shaft's axis, measured on the side of the material."""
+    yield from _of_tapers(seen, end)
     flanks = [plane for plane in seen.planes if plane.holds(Z)]
     legs = [(leg, plane) for plane in flanks if (leg := _leg(plane, end))]
     for (one, plane), (other, second) in combinations(legs, 2):
@@ -303,8 +316,33 @@ def _of_flanks(seen: PartSurfaces, end: View) -> Iterator[Measure]:
             yield Measure("angle", abs(turn), "end", "angle", points, 1, on(plane), on(second))
 
 
+def _of_tapers(seen: PartSurfaces, end: View) -> Iterator[Measure]:
+    """Yield the angles between planes along the shaft that are mirrored in the upright centre line."""
+    askew = [p for p in seen.planes if abs(p.direction.dot(Z)) < _CLEAR and not p.holds(Z)]
+    lines = [(p, *end.frame.flat(p.direction), p.point.dot(p.direction)) for p in askew]
+    right = [one for one in lines if one[1] * one[3] > 0 and min(abs(one[1]), abs(one[2])) > _CLEAR]
+    for plane, across, up, away in right:
+        lean, at = up / across, away / across  # x = at - lean y
+        for other, u, v, d in lines:
+            if abs(u) > _CLEAR and abs(d / u + at) < _ARC and abs(v / u + lean) < _CLEAR:
+                x, y = _middle(end, at, lean)
+                points = (0.0, at / lean), (x, y), (-x, y)
+                angle = 2 * degrees(atan2(abs(lean), 1.0))
+                yield Measure("angle", angle, "end", "angle", points, 1, on(plane), on(other))
+
+
+def _middle(end: View, at: float, lean: float) -> Point:
+    """Return the middle of the longest visible line x = at - lean y."""
+    runs = [
+        [y for x, y in curve.points if abs(x + lean * y - at) < 1e-4 and x * at > 0] for curve in end.visible
+    ]
+    run = max(runs, key=lambda ys: max(ys) - min(ys) if ys else 0.0, default=[])
+    y = (min(run) + max(run)) / 2 if run else 0.0
+    return at - lean * y, y
+
+
 def _leg(plane: Surface, end: View) -> Point | None:
-    """Return the end of a visible line that runs away from the shaft within a plane."""
+    """Return the point farthest from the shaft on visible lines that lie in a plane."""
     normal = end.frame.flat(plane.direction)
     on = [p for curve in end.visible for p in curve.points if abs(p[0] * normal[0] + p[1] * normal[1]) < 1e-4]
     return max(on, key=lambda p: hypot(*p), default=None)

@@ -15,7 +15,7 @@ from cad.drafting.breaks import zigzag
 from cad.drafting.curves import Curve, Point
 from cad.drafting.dimension_layout import EXTENSION, GAP, TEXT, PlacedDimension
 from cad.drafting.plan import Plan
-from cad.drafting.symbols import Symbol
+from cad.drafting.symbols import Symbol, arrow
 from cad.drafting.views import View
 
 APP = "CRANKWRIGHT"
@@ -70,7 +70,7 @@ def document_of(plan: Plan) -> Drawing:
 
 
 class Page:
-    """Draws the pieces; places on the paper are in millimetres from the sheet's lower left corner."""
+    """Draws the entities of a sheet; positions on the paper are in millimetres from its lower left corner."""
 
     def __init__(self, document: Drawing, plan: Plan) -> None:
         self.document = document
@@ -78,7 +78,7 @@ class Page:
         self.plan = plan
 
     def view(self, view: View, right: float) -> None:
-        """Draw the lines of a view, moved to the right, and its cut faces."""
+        """Draw the lines and the cut faces of a view, moved to the right."""
         for layer, curves in (("HIDDEN", view.hidden), ("SMOOTH", view.smooth), ("OUTLINE", view.visible)):
             for curve in curves:
                 self._curve(curve, right, layer)
@@ -112,22 +112,24 @@ class Page:
             self.space.add_arc(centre, arc.radius, start, start + arc.turn, dxfattribs=attributes)
 
     def centres(self, lines: Sequence[tuple[Point, Point]], circles: Sequence[tuple[Point, float]]) -> None:
-        """Centre lines and pitch circles of the drawing."""
+        """Draw centre lines and pitch circles."""
         for one, other in lines:
             self.space.add_line(one, other, dxfattribs={"layer": "CENTRE"})
         for centre, radius in circles:
             self.space.add_circle(centre, radius, dxfattribs={"layer": "CENTRE"})
 
     def dimension(self, placed: PlacedDimension) -> None:
-        """Draw a dimension at its position, with the name of its parameter."""
+        """Draw a dimension at its position, and attach the name of its parameter."""
         override = self._drawn(placed)
         override.dimension.dxf.layer = "DIMENSIONS"
         override.render()
+        if placed.leader:
+            self._led(override.dimension, placed)
         if placed.dimension.name:
             override.dimension.set_xdata(APP, [(1000, placed.dimension.name)])
 
     def _drawn(self, placed: PlacedDimension) -> Any:
-        """Return a DIMENSION of the right kind."""
+        """Return a DIMENSION entity of the right kind."""
         measure, base = placed.dimension.measure, placed.base
         points: Any = [(x + placed.right, y) for x, y in measure.points]
         style: Any = {"text": placed.label.mtext, "dimstyle": STYLE}
@@ -152,10 +154,34 @@ class Page:
                 )
             case "arc":
                 return self.space.add_radius_dim(points[0], radius=measure.value, location=base, **level)
-        return self.space.add_angular_dim_3p(base, *_counter_clockwise(points), **style)
+        drawn = self.space.add_angular_dim_3p(base, *_counter_clockwise(points), **style)
+        if placed.words is not None:
+            drawn.set_location(placed.words)
+        return drawn
+
+    def _led(self, dimension: Any, placed: PlacedDimension) -> None:
+        """Draw an arc's or circle's dimension as a leader with its words, in place of what ezdxf draws.
+
+        Ezdxf lets a leader neither come across the centre of an arc, nor end with the words above it.
+        """
+        assert placed.leader
+        assert placed.words
+        _, bend, end = (self.plan.at(*point) for point in placed.leader)
+        block = dimension.get_geometry_block()
+        block.delete_all_entities()
+        drawn = arrow(placed.leader[0], placed.leader[1])
+        for line in drawn.lines:
+            block.add_line(*(self.plan.at(*point) for point in line))
+        for corners in drawn.filled:
+            block.add_solid([self.plan.at(*point) for point in corners])
+        block.add_line(bend, end)
+        text = placed.label.text.replace("<>", placed.label.number)
+        style = {"style": STYLE, "char_height": TEXT / self.plan.scale, "attachment_point": 5, "color": 7}
+        block.add_mtext(text, dxfattribs={**style, "insert": placed.words})
+        dimension.dxf.text_midpoint = placed.words
 
     def _line_under(self, placed: PlacedDimension, along: int) -> None:
-        """Extend a dimension line under a text beyond its end."""
+        """Extend a dimension line below a text that stands beyond its end."""
         assert placed.ends is not None
         assert placed.words is not None
         half = placed.label.width(TEXT) / 2
@@ -184,14 +210,14 @@ class Page:
         self.space.add_lwpolyline([self.plan.at(*p) for p in points], dxfattribs={"layer": layer})
 
     def write(self, text: str, x: float, y: float, size: float) -> Text:
-        """Return a line of letters on the paper."""
+        """Write a line of text on the paper; return its entity."""
         attributes = {"layer": "TEXT", "style": STYLE, "height": size / self.plan.scale}
         written: Text = self.space.add_text(text, dxfattribs={**attributes, "insert": self.plan.at(x, y)})
         return written
 
 
 def _counter_clockwise(points: Sequence[Point]) -> tuple[Point, Point, Point]:
-    """Return the corner and legs of an angle below 180°, the legs in the order in which it opens."""
+    """Return the corner and legs of an angle below 180°, with the legs in counter-clockwise order."""
     corner, one, other = points
     cross = (one[0] - corner[0]) * (other[1] - corner[1]) - (one[1] - corner[1]) * (other[0] - corner[0])
     return (corner, one, other) if cross >= 0 else (corner, other, one)

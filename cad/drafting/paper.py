@@ -1,4 +1,4 @@
-"""The drawing as PDF: its SVG, placed by Typst on a page of the same size; vectors and letters, no pixels."""
+"""Convert a drawing to PDF: Typst places its SVG on a page of the same size, as vectors and text."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _PAGE = (
 def as_pdf(svg: bytes) -> bytes:
     """Return a drawing as PDF.
 
-    Equal drawings give equal bytes. What a client wrote in it is text there too.
+    Equal drawings give equal bytes. Text that a client entered stays text in the PDF.
     """
     files: Any = {
         "main": _PAGE.format(*_size(svg)).encode(),
@@ -38,6 +38,6 @@ def as_pdf(svg: bytes) -> bytes:
 
 
 def _size(svg: bytes) -> tuple[float, float]:
-    """Return the width and height of a drawing's sheet [mm]; texts of a client come later in the file."""
+    """Return the width and height of a drawing's sheet [mm], read ahead of any text of a client."""
     found = _SIZE.search(svg[:500])
     return (float(found[1]), float(found[2])) if found else (FORMATS[0].width, FORMATS[0].height)

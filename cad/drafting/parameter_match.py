@@ -1,4 +1,4 @@
-"""Match parameters with the measures that the views show: by the faces that carry them."""
+"""Match parameters with the measures that the views show, by the faces that carry them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _SORTS: dict[Kind, tuple[Sort, ...]] = {
     "edge": ("edge",),
 }
 _AMOUNT = re.compile(
-    r"(-?[0-9.eE+-]+) (\S+)(?: [A-Za-z]{1,2}[0-9]{1,2}| [-+±].*)?"
+    r"(-?[0-9.eE+-]+) (\S+)(?: [A-Za-z]{1,2}[0-9]{1,2}(?:, in table)?| [-+±].*)?"
 )  # with a tolerance behind it
 _WITHIN = ("aligned", "circle", "arc", "angle")  # dimensions that do not stand beside the view
 _PRECISION = 1e-6  # relative and in mm
@@ -32,9 +32,9 @@ _PRECISION = 1e-6  # relative and in mm
 
 @dataclass(frozen=True)
 class Dimension:
-    """A size to be drawn; `name` is the parameter that it is, None for one that is no parameter.
+    """A size to be drawn; `name` is its parameter, or None if it shows no parameter.
 
-    One that other dimensions give already is for reference, and stands in brackets.
+    A reference dimension follows from other dimensions and is drawn in brackets.
     """
 
     measure: Measure
@@ -50,18 +50,18 @@ def matched(
     measures: Sequence[Measure],
     limits: Mapping[str, Limits],
 ) -> tuple[list[Dimension], list[str]]:
-    """Return a dimension for each parameter that is seen, and the names of those that are not.
+    """Return a dimension for each parameter that the views show, and the names of all other parameters.
 
     Parameters
     ----------
     parameters
-        As in the header of a STEP file: `{"inner_diameter": "50 mm", "shells": "upper"}`.
+        Parameters as in the header of a STEP file: `{"inner_diameter": "50 mm", "shells": "upper"}`.
     sizes
-        Those that faces of the solid carry, by parameter.
+        Sizes that faces of the solid carry, by parameter.
     measures
-        What the views show.
+        Sizes that the views show.
     limits
-        Those of toleranced parameters.
+        Limit deviations of toleranced parameters.
     """
     matches: list[Dimension] = []
     unseen: list[str] = []
@@ -72,7 +72,7 @@ def matched(
         if fitting := _fitting(sizes[name], measures) if name in sizes else []:
             measure = _clearest(fitting, matches)
             alike = tuple(m for m in fitting if _kind(m) == _kind(measure) and m is not measure)
-            if (several := _repeats(sizes[name])) > 1:
+            if (several := len(sizes[name].places)) > 1:
                 measure = replace(measure, count=measure.count * several)
             matches.append(Dimension(measure, name, limits.get(name), alike))
         else:
@@ -80,14 +80,8 @@ def matched(
     return matches, unseen
 
 
-def _repeats(size: Size) -> int:
-    """Return how often a size occurs: at each of its places, or across each of several equal slots."""
-    first, second = size.places[0].first, size.places[0].second
-    return len(first) // 2 if first == second else len(size.places)
-
-
 def spans_of(size: Size, seen: Mapping[str, PartSurfaces]) -> list[Point]:
-    """Return the start and end of a length at each of its places along the shaft, if it repeats."""
+    """Return the start and end of a repeated length at each place along the shaft; empty for others."""
     if size.kind != "distance" or len(size.places) < 2:
         return []
     at = {plane.face: plane.point.z for one in seen.values() for plane in one.planes if plane.along(Z)}
@@ -98,7 +92,11 @@ def spans_of(size: Size, seen: Mapping[str, PartSurfaces]) -> list[Point]:
 
 
 def _clearest(fitting: Sequence[Measure], matches: Sequence[Dimension]) -> Measure:
-    """Return the first; of equal ones drawn within the view, that which is farthest from the others there."""
+    """Return the best measure to draw.
+
+    It is the first one. If that one is drawn within the view, it is the equivalent one that is farthest from
+    other dimensions there.
+    """
     others = [d.measure.points[0] for d in matches if d.measure.form in _WITHIN]
     first = fitting[0]
     if first.form not in _WITHIN or not others:
@@ -112,7 +110,7 @@ def _kind(measure: Measure) -> tuple[str, str, str]:
 
 
 def _fitting(size: Size, measures: Sequence[Measure]) -> list[Measure]:
-    """Return the measures of the faces that carry a size, the clearest sort first."""
+    """Return the measures taken on the faces of a size, in order of preference."""
     sorts = _SORTS[size.kind]
     shown = [m for m in measures if m.sort in sorts and _same(m.value, size) and _is_on(m, size)]
     return sorted(shown, key=lambda m: (sorts.index(m.sort), m.place != "section", m.form == "circle"))
@@ -125,10 +123,12 @@ def _same(one: float, other: float) -> bool:
 def _is_on(measure: Measure, size: Size) -> bool:
     """Return whether a measure is taken on the faces of a size.
 
-    A measure from an axis has no second faces; the faces of the size are then about that axis.
+    A measure from an axis has no second faces; the faces of the size are then about that axis. Those of a
+    pitch circle are its holes.
     """
     for place in size.places:
-        for first, second in ((place.first, place.second), (place.second, place.first)):
+        sides = (place.first, place.second), (place.second, place.first)
+        for first, second in sides[:1] if size.kind == "circle" else sides:
             if not measure.first.isdisjoint(first) and (
                 not (measure.second and second) or not measure.second.isdisjoint(second)
             ):
@@ -146,12 +146,12 @@ def length_of(text: str) -> float:
     """
     size = size_of(text)
     if size is None or size[1]:
-        raise ValueError(f"{text!r} is no length")
+        raise ValueError(f"{text!r} is not a length")
     return size[0]
 
 
 def size_of(text: str) -> tuple[float, bool] | None:
-    """Return a length in millimetres or an angle in degrees, and which of them it is."""
+    """Return a length [mm] or an angle [degrees], and whether it is an angle; None for other texts."""
     match = _AMOUNT.fullmatch(text)
     if match is None:
         return None

@@ -1,4 +1,4 @@
-"""What must be dimensioned on a sheet: levels, radii, axes and directions of the faces of its parts."""
+"""The features that a sheet must dimension: levels, radii, axes and directions of the faces of its parts."""
 
 from __future__ import annotations
 
@@ -11,12 +11,15 @@ from cadquery import Vector
 
 from cad.drafting.curves import Point
 from cad.drafting.section import Frame
-from cad.surfaces import Surface, Z
+from cad.surfaces import Face, Surface, Z
 
 _CLEAR = 1e-4  # [mm]
 _FLAT = 1e-6  # as the sine of an angle
 
 Words = dict[float, str]
+BarCut = tuple[float, frozenset[Face]]
+"""The height of a section across a bar, and the planes that it cuts where the bar tapers."""
+
 Sort = Literal["diameter", "radius", "chamfer", "angle", "width"]
 """Sizes that a feature has of itself: a hole its diameter, a fillet its radius, a slope its angle, a slot
 and a bar with round ends their width."""
@@ -24,7 +27,7 @@ and a bar with round ends their width."""
 
 @dataclass(frozen=True)
 class Hole:
-    """An axis along the shaft but beside it, in the end view: of a hole, a pin, a round end."""
+    """The axis of a hole, pin or round end that is parallel to the shaft, as a point in the end view."""
 
     axis: Point
     diameter: float
@@ -32,27 +35,29 @@ class Hole:
 
     @property
     def turn(self) -> float:
-        """Return its direction from the shaft [deg]."""
+        """Return the direction from the shaft to the axis [deg]."""
         return degrees(atan2(self.axis[1], self.axis[0]))
 
     def is_like(self, other: Hole) -> bool:
-        """Return whether another one of the same diameter is as far from the shaft."""
+        """Return whether another hole has the same diameter and the same distance from the shaft."""
         away = abs(hypot(*self.axis) - hypot(*other.axis))
         return away < _CLEAR and abs(self.diameter - other.diameter) < _CLEAR
 
 
 @dataclass
 class Features:
-    """Stations by direction with their words; sizes of features; axes beside the shaft.
+    """Positions of faces by direction, with descriptions; sizes of features; axes parallel to the shaft.
 
     Attributes
     ----------
     rays
-        Directions of what is askew to the centre lines of the end view [deg].
+        Directions of planes that are oblique to the centre lines of the end view [deg].
     round_at
-        Where along the shaft a radius is found that no cylinder has.
+        Positions along the shaft at which radii occur that belong to no cylinder.
     centres
-        Where along the shaft the section has a centre line.
+        Positions along the shaft at which the section has a centre line.
+    bars
+        By the height of a section across a tapered bar, how far the bar reaches to the right there.
     """
 
     along: Words = field(default_factory=dict)
@@ -64,24 +69,26 @@ class Features:
     holes: list[Hole] = field(default_factory=list)
     centres: list[float] = field(default_factory=list)
     round_at: dict[float, float] = field(default_factory=dict)
+    bars: dict[float, float] = field(default_factory=dict)
 
     @staticmethod
-    def of(surfaces: Sequence[Surface], frame: Frame) -> Features:
-        """Return the features of surfaces where they stand; `frame` is that of the end view."""
-        return _Reader(surfaces, frame).read()
+    def of(surfaces: Sequence[Surface], frame: Frame, cuts: Sequence[BarCut] = ()) -> Features:
+        """Return the features of placed surfaces; `frame` is that of the end view."""
+        return _Reader(surfaces, frame, cuts).read()
 
 
 class _Reader:
     """Reads features from surfaces."""
 
-    def __init__(self, surfaces: Sequence[Surface], frame: Frame) -> None:
-        self.frame, self.found = frame, Features()
+    def __init__(self, surfaces: Sequence[Surface], frame: Frame, cuts: Sequence[BarCut]) -> None:
+        self.frame, self.found, self.cuts = frame, Features(), cuts
         self.planes = [s for s in surfaces if s.form == "plane"]
         self.cylinders = [s.turned(Z) for s in surfaces if s.form == "cylinder"]
         self.cones = [s.turned(Z) for s in surfaces if s.form == "cone"]
         self.tori = [s for s in surfaces if s.form == "torus"]
         self.spheres = [s for s in surfaces if s.form == "sphere"]
         self.levels = sorted({round(p.point.z, 6) for p in self.planes if p.along(Z)})
+        self.fillets = [c for c in self.cylinders if self._is_fillet(c)]
 
     def read(self) -> Features:
         for plane in self.planes:
@@ -116,10 +123,13 @@ class _Reader:
             self._askew(plane, words)
 
     def _askew(self, plane: Surface, words: str) -> None:
-        """Record a plane along the shaft, at an angle to both centre lines."""
-        if self._is_tangent(plane):
+        """Record a plane parallel to the shaft that is oblique to both centre lines."""
+        if self._is_tangent(plane) or self._tapers(plane, words):
             return
         away = plane.point.dot(plane.direction)
+        if self._is_of_hexagon(plane):
+            self.found.own["width", 2 * abs(away)] = f"width across flats of {_name(plane)}"
+            return
         x, y = self.frame.flat(plane.middle) if plane.middle is not None else (0.0, 0.0)
         u, v = self.frame.flat(plane.direction)
         foot = x - away * u, y - away * v  # on the line through the shaft beside which the plane runs
@@ -128,10 +138,34 @@ class _Reader:
         if abs(away) > _CLEAR:
             self.found.own["width", 2 * abs(away)] = f"width between planes of {_name(plane)}"
 
+    def _is_of_hexagon(self, plane: Surface) -> bool:
+        """Return whether a plane is a flat of a regular hexagon about the axis, which its width defines."""
+        away = plane.point.dot(plane.direction)
+        flats = [p for p in self.planes if p.face[0] == plane.face[0] and abs(p.direction.dot(Z)) < _FLAT]
+        alike = (p for p in flats if abs(abs(p.point.dot(p.direction)) - abs(away)) < _CLEAR)
+        turns = {round(degrees(atan2(p.direction.y, p.direction.x)) % 60, 3) % 60 for p in alike}
+        return len(flats) == 6 and len(turns) == 1
+
+    def _tapers(self, plane: Surface, words: str) -> bool:
+        """Return whether sections across a bar cut a plane; record taper and place in each section."""
+        across, up = self.frame.flat(plane.direction)
+        heights = [height for height, faces in self.cuts if plane.face in faces]
+        for height in heights:
+            at = (plane.point.dot(plane.direction) - up * height) / across
+            self.found.across[at] = f"{words} at {at:.6g} mm, {height:.6g} mm high"
+            self.found.bars[height] = max(at, self.found.bars.get(height, at))
+            self.found.up[height] = f"the section of {_name(plane)} at {height:.6g} mm"
+            taper = 2 * degrees(atan2(abs(up), abs(across)))
+            self.found.own["angle", taper] = f"taper of {_name(plane)}"
+        return bool(heights)
+
     def _is_tangent(self, plane: Surface) -> bool:
-        """Return whether a plane touches two round ends of a bar, or one along whose radius it runs."""
+        """Return whether a plane is located by round ends that it touches.
+
+        It touches two round ends of a bar, or one end along a radius from the shaft.
+        """
         touched: list[Vector] = []
-        for end in (c for c in self.cylinders if c.along(Z) and not c.about(Z)):
+        for end in (c for c in self.cylinders if c.along(Z) and not c.about(Z) and c not in self.fillets):
             away = (end.point - plane.point).dot(plane.direction)
             if abs(abs(away) - end.diameter / 2) < _CLEAR:
                 foot = end.point - Z * end.point.z
@@ -143,7 +177,7 @@ class _Reader:
         return False
 
     def _slope(self, plane: Surface) -> None:
-        """Record the angle of a leaning plane, and how far from the shaft the plane begins."""
+        """Record the angle of an inclined plane, and its distance from the shaft where it begins."""
         if any(_touch(cone, plane) for cone in self.cones):
             return  # a chamfer that goes straight on
         normal = plane.direction
@@ -170,6 +204,9 @@ class _Reader:
             return
         if self._is_relief(cylinder):
             return
+        if cylinder in self.fillets:
+            self.found.own["radius", radius] = f"R{radius:.6g} of {name}"
+            return
         sort: Sort = "width" if self._is_round_end(cylinder) else "diameter"
         self.found.own[sort, cylinder.diameter] = f"Ø{cylinder.diameter:.6g} of {name}"
         if cylinder.along(Z):
@@ -180,8 +217,20 @@ class _Reader:
         elif abs(cylinder.direction.dot(Z)) < _FLAT:
             self._cross_hole(cylinder, name)
 
+    def _is_fillet(self, cylinder: Surface) -> bool:
+        """Return whether a cylinder along the shaft touches two faces, as a rounded edge does."""
+        if not cylinder.along(Z) or cylinder.about(Z):
+            return False
+        coaxial = (c for c in self.cylinders if _are_in_line(c, cylinder))
+        if any(abs(c.diameter - cylinder.diameter) > _CLEAR for c in coaxial):
+            return False
+        planes = [p for p in self.planes if abs(p.direction.dot(Z)) < _FLAT and _touches(cylinder, p)]
+        rounds = [c for c in self.cylinders if c.along(Z) and _touches_round(cylinder, c)]
+        are_parallel = not rounds and all(p.along(planes[0].direction) for p in planes)
+        return len(planes) + len(rounds) > 1 and not are_parallel
+
     def _is_round_end(self, cylinder: Surface) -> bool:
-        """Return whether planes touch a cylinder on two sides, the largest one about its axis."""
+        """Return whether planes touch a cylinder on two sides and no larger cylinder is coaxial."""
         if any(_are_in_line(c, cylinder) and c.diameter > cylinder.diameter + _CLEAR for c in self.cylinders):
             return False
         beside = [p for p in self.planes if cylinder.along(Z) and abs(p.direction.dot(Z)) < _FLAT]
@@ -199,7 +248,7 @@ class _Reader:
             self.found.up[y] = f"the axis of a hole of {name} at {y:.6g} mm"
 
     def _is_relief(self, cylinder: Surface) -> bool:
-        """Return whether a circle opens a bore beside its joint; record its height and depth."""
+        """Return whether a cylinder relieves a bore beside its joint; if so, record its height and depth."""
         x, y = self.frame.flat(cylinder.point)
         bores = [c for c in self.cylinders if c.about(Z)]
         if not cylinder.along(Z) or not bores:
@@ -207,7 +256,7 @@ class _Reader:
         bore = min(bores, key=lambda c: c.diameter)
         deep = hypot(x, y) + cylinder.diameter / 2 - bore.diameter / 2
         is_wide = hypot(x, y) < cylinder.diameter / 2 < bore.diameter / 2 + _CLEAR
-        if not is_wide:
+        if not is_wide or deep < _CLEAR:
             return False
         edge = relief_height(hypot(x, y), cylinder.diameter / 2, bore.diameter / 2)
         along, at = (self.found.up, edge) if abs(x) > abs(y) else (self.found.across, edge)
@@ -238,14 +287,14 @@ class _Reader:
             self.found.round_at[root] = torus.point.z
 
     def _is_below(self, torus: Surface) -> bool:
-        """Return whether a round groove opens outwards: the cylinders beside it are within its circle."""
+        """Return whether a round groove opens outwards, so that the nearest cylinder is below its centre."""
         radii = [c.diameter / 2 for c in self.cylinders if c.about(Z) and c.face[0] == torus.face[0]]
         return (
             min((abs(r - torus.about_radius), r) for r in radii)[1] < torus.about_radius if radii else False
         )
 
     def _drilling(self) -> None:
-        """Record the ends of the axis of one oblique hole; the other holes are equal."""
+        """Record the ends of the axis of one oblique hole; the other holes are equal to it."""
         slanted = [c for c in self.cylinders if not c.along(Z) and abs(c.direction.dot(Z)) > _FLAT]
         upright = self.frame.right
         within = [c for c in slanted if abs(c.point.dot(upright)) + abs(c.direction.dot(upright)) < _CLEAR]
@@ -261,7 +310,7 @@ class _Reader:
                 )
 
     def _crossings(self, hole: Surface) -> Iterator[float]:
-        """Yield where the axis of a hole crosses cylinders along the shaft, along that axis."""
+        """Yield the coordinates along the axis of a hole at which it crosses cylinders along the shaft."""
         for other in (c for c in self.cylinders if c.along(Z)):
             start, way = hole.point - other.point, hole.direction
             a, b = way.x**2 + way.y**2, start.x * way.x + start.y * way.y
@@ -273,7 +322,7 @@ class _Reader:
                         yield (hole.point + way * t).dot(way)
 
     def _centres(self) -> None:
-        """Record a centre line in the middle of the part if pairs of planes lie about it."""
+        """Record a centre line in the middle of the part if pairs of planes are symmetric about it."""
         pairs = [
             z for z in self.levels if z > _CLEAR and any(abs(z + other) < _CLEAR for other in self.levels)
         ]
@@ -283,8 +332,22 @@ class _Reader:
 
 
 def _are_in_line(one: Surface, other: Surface) -> bool:
-    """Return whether two cylinders have one axis."""
+    """Return whether two cylinders are coaxial."""
     return one.along(other.direction) and (one.point - other.point).cross(other.direction).Length < _CLEAR
+
+
+def _touches(cylinder: Surface, plane: Surface) -> bool:
+    """Return whether a plane of the same part touches a cylinder along it."""
+    away = abs((cylinder.point - plane.point).dot(plane.direction))
+    return plane.face[0] == cylinder.face[0] and abs(away - cylinder.diameter / 2) < _CLEAR
+
+
+def _touches_round(one: Surface, other: Surface) -> bool:
+    """Return whether a parallel cylinder of the same part touches another from outside or inside."""
+    apart = (one.point - other.point).cross(one.direction).Length
+    radii = one.diameter / 2, other.diameter / 2
+    is_near = abs(apart - sum(radii)) < _CLEAR or abs(apart - abs(radii[0] - radii[1])) < _CLEAR < apart
+    return one.face[0] == other.face[0] and is_near
 
 
 def _touch(cone: Surface, plane: Surface) -> bool:
@@ -298,7 +361,17 @@ def _touch(cone: Surface, plane: Surface) -> bool:
 
 
 def relief_height(axis: float, radius: float, bore: float) -> float:
-    """Return how far above the joint a relief's circle about an axis [mm] meets the bore [mm]."""
+    """Return the height above the joint at which the circle of a relief meets the bore [mm].
+
+    Parameters
+    ----------
+    axis
+        Distance of the centre of the relief from the shaft [mm].
+    radius
+        Radius of the relief [mm].
+    bore
+        Radius of the bore [mm].
+    """
     along = (bore**2 - radius**2 + axis**2) / (2 * axis)
     return float(max(bore**2 - along**2, 0.0) ** 0.5)
 

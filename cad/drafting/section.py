@@ -15,7 +15,7 @@ CLEAR = 1e-5  # [mm]; boxes of the kernel are good to some 1e-7
 
 @dataclass(frozen=True)
 class Frame:
-    """Directions of space on the paper: right and up in a view, and towards the eye."""
+    """The directions in space that point right and up in a view, and towards the viewer."""
 
     right: Vector
     up: Vector
@@ -26,7 +26,7 @@ class Frame:
         return self.right.cross(self.up)
 
     def flat(self, point: Vector) -> Point:
-        """Return a point of space on the paper."""
+        """Return the projection of a point in space onto the paper."""
         return point.dot(self.right), point.dot(self.up)
 
 
@@ -42,20 +42,20 @@ class Arc:
 
 @dataclass(frozen=True)
 class Cut:
-    """A cut face: its outlines, holes among them, and of which part it is."""
+    """A cut face: its outlines, the outer one first and then the holes, and the number of its part."""
 
     part: int
     outlines: list[list[Vertex]]
 
 
 def cut_of(part: int, face: Face, frame: Frame) -> Cut:
-    """Return a cut face of a part on the paper."""
+    """Return a cut face of a part, projected onto the paper."""
     wires = face.outerWire(), *face.innerWires()
     return Cut(part, [outline([curve_of(edge, frame) for edge in wire.Edges()]) for wire in wires])
 
 
 def reach_of(shape: Shape) -> float:
-    """Return the extent [mm] of planes and boxes that contain a shape and the origin."""
+    """Return a size [mm] for planes and boxes that are to contain a shape and the origin."""
     box = BoundBox._fromTopoDS(shape.wrapped, None, False)  # loose, a hundred times as fast
     sides = (box.xmin, box.xmax, box.ymin, box.ymax, box.zmin, box.zmax)
     return 2.5 * float(max(abs(side) for side in sides))
@@ -77,7 +77,7 @@ def half_behind(shape: Shape, normal: Vector) -> list[Shape]:
 
 
 def curve_of(edge: Edge, frame: Frame) -> Curve:
-    """Return an edge of a cut face."""
+    """Return an edge of a cut face as a curve on the paper."""
     if edge.geomType() == "LINE":
         return Curve([frame.flat(edge.startPoint()), frame.flat(edge.endPoint())])
     if edge.geomType() == "CIRCLE":
@@ -87,7 +87,7 @@ def curve_of(edge: Edge, frame: Frame) -> Curve:
 
 
 def _round(edge: Edge, frame: Frame) -> Curve:
-    """Return a circular edge in the plane of the paper."""
+    """Return a circular edge in the plane of the paper as a curve."""
     centre, radius = frame.flat(edge.arcCenter()), edge.radius()
     turn = min(degrees(edge.Length() / radius), 360.0)
     begin, middle, end = (frame.flat(edge.positionAt(share)) for share in (0.0, 0.25, 1.0))

@@ -16,26 +16,29 @@ from cad.drafting.title import (
     FIELDS,
     GENERAL,
     HEIGHT,
+    ROUNDED,
     SIZES,
+    STAMPED_OF_PART,
     SURFACES,
     TEXTURE,
     WIDTH,
+    Field,
 )
 from cad.header import Header
 from cad.stamp import MARK
 from cad.step import Body
-from cad.tolerances import Limits, deviations, limits_of, number_of
+from cad.tolerances import Limits, TableTolerance, angle_tolerance, deviations, limits_of, number_of
+from templates.core.units.tolerance import IN_TABLE
 
 _ROW = 6.0  # from one row of the table to the next, if they have room [mm on paper]
 _LETTERS = 3.0
 _NAMES = 58.0  # width of the names in the table [mm on paper]
-_OF_THE_WHOLE = ("mass", "material", "part")
-"""Fields that a stamp fills in with what is true of all parts together."""
+_LARGE, _DM3 = 1e5, 1e6  # [mm³]
 _MOST_LINES = 3  # of one value in the table
 
 
 def frame(page: Page) -> None:
-    """Draw the border of the sheet and of its areas, after the sheet itself."""
+    """Draw the edge of the sheet, then the borders of its areas."""
     format = page.plan.format
     width, height = format.width, format.height
     right, column, block = width - EDGE, width - EDGE - COLUMN, width - EDGE - WIDTH
@@ -49,24 +52,24 @@ def frame(page: Page) -> None:
 
 @dataclass(frozen=True)
 class General:
-    """General tolerances: with a datum the surfaces have a profile tolerance about it [mm] (ISO 22081)."""
+    """General tolerances; with a datum, a general profile tolerance refers to it [mm] (ISO 22081)."""
 
     profile: float | None = None
     datum: str = ""
 
     @property
     def has_profile(self) -> bool:
-        """Return whether ISO 22081 applies."""
+        """Return whether the general profile tolerance of ISO 22081 applies."""
         return self.profile is not None and self.datum != ""
 
     @property
     def text(self) -> str:
-        """Return the text of the title block that precedes the profile frame."""
+        """Return the text before the profile frame in the title block."""
         return f"{SIZES}, {SURFACES}" if self.has_profile else GENERAL
 
     @property
     def note(self) -> str:
-        """Return its meaning, for the notes."""
+        """Return the note that explains the general tolerances."""
         if not self.has_profile:
             return f"sizes, angles and geometry without a tolerance: {GENERAL}"
         return (
@@ -74,7 +77,7 @@ class General:
         )
 
     def draw(self, page: Page, left: float, low: float) -> None:
-        """Draw the frame of the profile after the text at a position."""
+        """Draw the frame of the profile tolerance after its text."""
         if self.profile is not None and self.datum:
             frame = Frame("profile", self.profile, self.datum, 2.5)
             frame.draw(page, left + width_of(self.text, 2.5) + 1.5, low - 1.3)
@@ -82,35 +85,47 @@ class General:
 
 @dataclass(frozen=True)
 class SheetNumber:
-    """The number of a sheet: the first shows all parts, each further one a part.
+    """The number of a sheet: the first sheet shows all parts, each further sheet one part.
 
-    `names` are those of all parts on the first sheet of several, with how often they occur.
+    On the first of several sheets, `names` holds the names of all parts and how often they occur. `volume` is
+    that of the part [mm³], from which a stamp computes its mass.
     """
 
     number: int = 1
     count: int = 1
     part: str = ""
     names: tuple[tuple[str, int], ...] = ()
+    volume: float = 0.0
+
+    @property
+    def volume_text(self) -> str:
+        """Return the volume of a part, with a unit that makes it short enough for its field."""
+        if not self.part:
+            return ""
+        return f"{self.volume:.5g} mm³" if self.volume < _LARGE else f"{self.volume / _DM3:.5g} dm³"
 
     @staticmethod
     def of(bodies: Sequence[Body], whole: Sequence[Body]) -> SheetNumber:
-        """Return the number of the sheet of some bodies of a whole."""
+        """Return the number of the sheet that shows some of the bodies of a model."""
         every = [body.name for body in whole or bodies]
         if len(every) == 1:
             return SheetNumber()
         if len(bodies) == 1:
-            return SheetNumber(every.index(bodies[0].name) + 2, len(every) + 1, bodies[0].name)
+            part = bodies[0]
+            number = every.index(part.name) + 2
+            return SheetNumber(number, len(every) + 1, part.name, volume=part.shape.Volume())
         names = tuple((body.name, len(body.places)) for body in bodies)
         return SheetNumber(1, len(every) + 1, "", names)
 
 
 def title_block(page: Page, header: Header | None, general: General, sheet: SheetNumber) -> None:
-    """Draw the fields of ISO 7200; a stamp fills in those of a design."""
+    """Draw the fields of ISO 7200; a stamp later fills in those that a design gives."""
     left, low = page.plan.format.block
     model = f"{header.model.replace('_', ' ')}, version {header.version}" if header else "part"
     texts = {
         "sheet": f"{sheet.number}/{sheet.count}",
         "part": sheet.part.replace("_", " "),
+        "mass": sheet.volume_text,
         "language": "en",
         "format": page.plan.format.name,
         "model": model,
@@ -129,11 +144,11 @@ def title_block(page: Page, header: Header | None, general: General, sheet: Shee
         page.line(box, "FRAME")
         page.write(field.caption, left + field.caption_at[0], low + field.caption_at[1], CAPTION)
         text = clipped(texts.get(field.name, ""), field.room, field.letters)
-        is_stamped = field.is_stamped and not (sheet.part and field.name in _OF_THE_WHOLE)
-        if is_stamped or text:
+        mark = _stamped(field, sheet)
+        if mark or text:
             line = page.write(text, left + field.text_at[0], low + field.text_at[1], field.letters)
-            if is_stamped:
-                line.set_xdata(APP, [(1000, f"{MARK}{field.mark}")])
+            if mark:
+                line.set_xdata(APP, [(1000, f"{MARK}{mark}")])
         if field.name == "general":
             general.draw(page, left + field.text_at[0], low + field.text_at[1])
         if field.name == "projection":
@@ -141,18 +156,28 @@ def title_block(page: Page, header: Header | None, general: General, sheet: Shee
             page.write("first", left + field.text_at[0], low + field.text_at[1], 2.0)
 
 
+def _stamped(field: Field, sheet: SheetNumber) -> str:
+    """Return the mark by which a stamp fills in a field; none if the drawing itself fills it in."""
+    if sheet.part and field.part_mark in STAMPED_OF_PART:
+        return field.part_mark
+    return field.mark if field.is_stamped and not (sheet.part and field.name == "part") else ""
+
+
 def notes(page: Page, header: Header | None, unseen: Sequence[str], general: General) -> None:
-    """Draw the notes for the whole drawing, to the left of the title block."""
+    """Draw the general notes, to the left of the title block."""
     left, top = LEFT + 3.0, EDGE + HEIGHT - 6.0
     lines = [
         "dimensions in mm, measured on the solid, at 20 °C (ISO 1); ( ) for reference",
         "size is a two-point size, independent of form (ISO 8015)",
         general.note,
         f"build {header.build[:32]}" if header else "",
-        "* not between two surfaces that are drawn" if unseen else "",
+        "* no dimension shows it, or its tolerance" if unseen else "",
     ]
-    for row, text in enumerate(filter(None, lines)):
+    written = [*filter(None, lines)]
+    for row, text in enumerate(written):
         page.write(text, left, top - 5.0 * row, 2.5)
+    stamped = page.write("", left, top - 5.0 * len(written), ROUNDED.letters)
+    stamped.set_xdata(APP, [(1000, f"{MARK}{ROUNDED.mark}")])
     y = EDGE + 4.0
     text = f"Ra {TEXTURE:g}"
     reach = width_of(text, 2.5)
@@ -165,7 +190,7 @@ def notes(page: Page, header: Header | None, unseen: Sequence[str], general: Gen
 
 
 def table(page: Page, parameters: Mapping[str, str], unseen: Sequence[str], below: int = 0) -> float:
-    """Draw the parameters with their values; return where they end, with room for rows `below` them."""
+    """Draw the table of parameters; return where it ends, with room left for `below` more rows."""
     left, top = page.plan.format.column
     left, top = left + 3, top - 7
     page.write("Parameters", left, top, 4.5)
@@ -187,7 +212,7 @@ def table(page: Page, parameters: Mapping[str, str], unseen: Sequence[str], belo
 
 
 def parts_list(page: Page, names: Sequence[tuple[str, int]], top: float) -> None:
-    """Draw the parts with the numbers of their balloons and how often they occur."""
+    """Draw the parts list: the numbers of the balloons, the names, and how often each part occurs."""
     if not names:
         return
     left = page.plan.format.column[0] + 3
@@ -206,18 +231,22 @@ def _value(text: str, limits: Limits | None) -> str:
     """Return a length in mm with its deviations, an angle in degrees, and other values unchanged."""
     size = size_of(text)
     if size is None:
-        return text
+        return text.removesuffix(IN_TABLE)
     value, is_angle = size
     if is_angle:
-        return f"{number_of(value, 6)}°"
+        within = angle_tolerance(text)
+        return " ".join((f"{number_of(value, 6)}°", *([f"{_ends(within)}°"] if within else [])))
     if limits is None:
         return number_of(value, 6)
-    ends = "/".join(filter(None, deviations(limits)))
-    return " ".join(filter(None, (number_of(value, 6), limits.zone, ends)))
+    return " ".join(filter(None, (number_of(value, 6), limits.zone, _ends(limits))))
+
+
+def _ends(limits: Limits | TableTolerance) -> str:
+    return "/".join(filter(None, deviations(limits)))
 
 
 def _wrapped(text: str, width: float) -> list[str]:
-    """Return a value in lines that are not wider than that; of a very long list only its beginning."""
+    """Wrap a value into lines of at most a given width; only the beginning of a very long list is kept."""
     if width_of(text, _LETTERS) <= width:
         return [text]
     lines = [""]

@@ -1,4 +1,4 @@
-"""Dimensions of what no parameter gives: positions that a model derives; overall lengths for reference."""
+"""Add dimensions that no parameter gives: positions derived by the model, and overall lengths."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Supplement:
     repeated: Mapping[str, Sequence[Point]]
 
     def complete(self, taken: Sequence[Dimension]) -> list[Dimension]:
-        """Return the dimensions, those that others give already for reference, and what was missing."""
+        """Return the given dimensions and the missing ones; redundant ones become reference dimensions."""
         every = [self.judged(one) for one in taken]
         for measure in self._missing():
             if len(every) >= len(taken) + _MOST:
@@ -40,7 +40,7 @@ class Supplement:
         return [*every, *self._overall(every)]
 
     def judged(self, one: Dimension) -> Dimension:
-        """Add a dimension; return it, in brackets if others give it already and it has no tolerance."""
+        """Add a dimension; return it, as a reference if it is redundant and has no tolerance."""
         is_new = self.definition.add(one.measure)
         joined_spans(self.definition, self.repeated.get(one.name or "", ()))
         return one if is_new or one.limits else replace(one, is_reference=True)
@@ -56,7 +56,7 @@ class Supplement:
         yield from self._levels("along")
 
     def _own(self) -> Iterator[Measure]:
-        """Yield sizes of features, from what the views show."""
+        """Yield the missing sizes of features that the views show."""
         for sort, value in self.definition.own:
             if self.definition.has_own((sort, value)):
                 continue
@@ -65,7 +65,7 @@ class Supplement:
                 yield measure
 
     def _round(self) -> Iterator[Measure]:
-        """Yield radii about the shaft: as a diameter, a wall, a radius, or as a height above the axis."""
+        """Yield missing radii about the shaft, each as a diameter, radius, wall thickness or height."""
         for group in self.definition.components("round")[1:]:
             for radius in (at for _, at in group):
                 if self.definition.joined(("round", radius), AXIS):
@@ -84,7 +84,7 @@ class Supplement:
         return any(self.definition.joined(one, AXIS) for one in span)
 
     def _drawn_radius(self, radius: float) -> Iterator[Measure]:
-        """Yield the height of a line of the section above the axis of the shaft."""
+        """Yield the diameter of a groove's root, or the height at which a slope begins."""
         features = self.definition.features
         near = [at for at in features.round_at if abs(at - radius) < _CLEAR]
         if not near:
@@ -96,16 +96,17 @@ class Supplement:
             yield Measure("offset", near[0], "section", "up", ((z, 0.0), (z, near[0])))
 
     def _levels(self, direction: str) -> Iterator[Measure]:
-        """Yield distances that connect groups of planes and axes, the nearest first."""
+        """Yield the distances that connect separate groups of planes and axes, the nearest first."""
         for _ in range(_MOST):
             groups = self.definition.components(direction)  # type: ignore[arg-type]
             placed, others = groups[0] if groups else [], groups[1:]
             if not others:
                 return
-            yield self._between(*(self._mirrored(others) or self._pair(direction, placed, others)))
+            pairs = groups if direction == "along" else others  # nothing is on the axis along the shaft
+            yield self._between(*(self._mirrored(pairs) or self._pair(direction, placed, others)))
 
     def _mirrored(self, others: Sequence[Sequence[Station]]) -> tuple[Station, Station] | None:
-        """Return the widest pair of stations about a centre line that nothing connects with it."""
+        """Return the widest pair of stations that are symmetric about a centre line and not yet located."""
         groups = combinations(others, 2)
         pairs = [
             (a, b) for one, other in groups for a in one for b in other if self.definition.is_symmetric(a, b)
@@ -115,7 +116,10 @@ class Supplement:
     def _pair(
         self, direction: str, placed: Sequence[Station], others: Sequence[Sequence[Station]]
     ) -> tuple[Station, Station]:
-        """Return the stations to connect: located ones and a centre line of others, or the nearest."""
+        """Return the two stations to connect.
+
+        Along the shaft, stations on a centre line come first; otherwise the nearest pair is taken.
+        """
         if direction == "along":
             on_centre = [
                 [one for one in group if any(abs(one[1] - c) < _CLEAR for c in self.definition.centres)]
@@ -141,16 +145,18 @@ class Supplement:
         return Measure("width", high - low, "end", "up" if along else "across", points)
 
     def _place(self, along: int, at: float, side: float) -> float:
-        """Return where across its direction a level has its place: at the axis of a hole, or at the side."""
-        axes = [hole.axis for hole in self.definition.features.holes if abs(hole.axis[along] - at) < _CLEAR]
-        return axes[0][1 - along] if axes else side
+        """Return the other coordinate of a level: that of a hole on it, or of the side of the view."""
+        features = self.definition.features
+        places = [hole.axis[1 - along] for hole in features.holes if abs(hole.axis[along] - at) < _CLEAR]
+        places += [x for height, x in features.bars.items() if along and abs(height - at) < _CLEAR]
+        return places[0] if places else side
 
     def _level(self, low: float, high: float) -> Measure:
         points = (low, foot(self.section, low)), (high, foot(self.section, high))
         return Measure("length", high - low, "section", "across", points)
 
     def _axis(self, hole: Hole) -> Iterator[Measure]:
-        """Yield what locates an axis beside the shaft: its circle and angle, or two heights."""
+        """Yield the dimensions that locate an axis along the shaft: pitch circle and angle, or offsets."""
         if self.definition.is_located(hole):
             return
         across, up, around, turn = hole_stations(hole)
@@ -168,7 +174,10 @@ class Supplement:
             yield Measure("offset", abs(x), "end", "across", ((min(x, 0.0), y), (max(x, 0.0), y)))
 
     def _turns(self) -> Iterator[Measure]:
-        """Yield angles at the shaft: the step of a pattern, and from centre lines to what is mirrored."""
+        """Yield the missing angles about the shaft.
+
+        Each is the step of a pattern, or the angle from the nearest located direction.
+        """
         for _ in range(_MOST):
             loose = [one for group in self.definition.components("turn")[1:] for one in group]
             if not loose:
@@ -183,7 +192,7 @@ class Supplement:
             yield self._turn(loose[0], count=2 if mirrored else 1)
 
     def _turn(self, one: Station, count: int = 1) -> Measure:
-        """Return the angle of a direction from the nearest one that is located."""
+        """Return the angle between a direction and the nearest direction that is already located."""
         known: list[Station] = [("turn", at) for at in (0.0, 90.0, 180.0, 270.0)]
         others = self.definition.optional if one in self.definition.optional else self.definition.needed
         if count == 1:
@@ -200,7 +209,7 @@ class Supplement:
         return Measure("angle", abs(_apart(one, other)), "end", "angle", points, count)
 
     def _overall(self, every: Iterable[Dimension]) -> Iterator[Dimension]:
-        """Yield the overall length, for reference, where no dimension has it."""
+        """Yield the overall length, for reference, if no dimension shows it."""
         levels = [at for direction, at in self.definition.needed if direction == "along"]
         spans = [sorted(x for x, _ in one.measure.points) for one in every
                  if (one.measure.form, one.measure.place) == ("across", "section")]  # fmt: skip
@@ -211,12 +220,12 @@ class Supplement:
 
 
 def _apart(one: Station, other: Station) -> float:
-    """Return the angle from one direction to another [deg], within half a turn."""
+    """Return the angle from one direction to another [deg], from -180 to 180."""
     return (other[1] - one[1] + 180) % 360 - 180
 
 
 def joined_spans(definition: Definition, spans: Iterable[Point]) -> None:
-    """Join stations along the shaft that repeated dimensions, or those of other views, connect."""
+    """Join the stations at the ends of spans along the shaft that repeated dimensions or other views give."""
     for low, high in spans:
         one, other = definition.known("along", low), definition.known("along", high)
         if one and other:

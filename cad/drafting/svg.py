@@ -1,7 +1,7 @@
-"""The drawing as SVG: the entities of its DXF, one after another, at the size of its sheet.
+"""Draw a drawing as SVG: the entities of its DXF in order, at the size of its sheet.
 
-An arc stays an arc, not a polyline. The SVG has no style attributes, which the pages' policy forbids, and no
-scripts.
+An arc stays an arc instead of becoming a polyline. The SVG contains no scripts, and no style attributes,
+because the content security policy of the pages forbids them.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ _FLAT = 0.02  # greatest distance of a hatched outline from its arcs [mm on pape
 
 
 def write_drawing(bodies: Sequence[Body], header: Header | None, whole: Sequence[Body] = ()) -> bytes:
-    """Return a dimensioned drawing of all parts or of one of the whole, the sheet in millimetres."""
+    """Return a dimensioned drawing of all parts of a model, or of one part; the sheet is in millimetres."""
     document, format = draw(bodies, header, whole)
     frame: Any = document.modelspace().query('LWPOLYLINE[layer=="FRAME"]').first
     (left, low), (right, _) = frame.get_points("xy")[:2]
@@ -72,17 +72,17 @@ def _title(header: Header | None) -> str:
 
 
 class Ink:
-    """Draws entities of DXF; the sheet's corner lies at (left, low) in their coordinates."""
+    """Draws DXF entities; the corner of the sheet is at (left, low) in their coordinates."""
 
     def __init__(self, left: float, low: float, scale: float, format: Format) -> None:
         self.left, self.low, self.scale, self.format = left, low, scale, format
 
     def at(self, point: Any) -> tuple[float, float]:
-        """Return a place on the paper, y downwards."""
+        """Convert a point to its position on the paper, with y downwards."""
         return (point[0] - self.left) * self.scale, self.format.height - (point[1] - self.low) * self.scale
 
     def of(self, entity: Any, layer: str) -> str:
-        """Return an entity, or its parts."""
+        """Return the SVG of an entity, or of the entities it consists of."""
         match entity.dxftype():
             case "DIMENSION" | "INSERT":
                 return "".join(self.of(part, layer) for part in entity.virtual_entities())
@@ -143,7 +143,7 @@ class Ink:
         )
 
     def _words(self, entity: Any) -> str:
-        """Draw the text of a dimension about its middle, followed by deviations one above the other."""
+        """Draw the text of a dimension about its middle, followed by the deviations one above the other."""
         height = entity.dxf.char_height * self.scale
         angle = entity.get_rotation()
         x, y = self.at(entity.dxf.insert)
@@ -170,7 +170,7 @@ def _text(text: str, x: float, y: float, height: float, anchor: str, turn: str) 
 
 
 def _mark_of(entity: Any) -> str:
-    """Return the attribute that identifies the title-block field of a text, if a stamp fills it in."""
+    """Return the attribute that marks a text as a title-block field, if a stamp fills it in."""
     if not entity.has_xdata(APP):
         return ""
     return f' data-stamp="{entity.get_xdata(APP)[0].value.removeprefix(MARK)}"'

@@ -1,4 +1,4 @@
-"""Symbols of a drawing as lines: projection, surface texture, geometric tolerances, datums, cutting arrows.
+"""Drawing symbols as lines: projection, surface texture, geometric tolerances, datums, cutting arrows.
 
 All sizes are millimetres on paper, from the symbol's own origin. A symbol consists of lines, circles and
 filled corners, not of letters of a font, so it looks the same in every program.
@@ -17,7 +17,7 @@ Circle = tuple[Point, float]
 
 @dataclass(frozen=True)
 class Symbol:
-    """Lines, thin dash-dotted lines, circles and filled triangles."""
+    """The lines, thin dash-dotted lines, circles and filled triangles of a symbol."""
 
     lines: Sequence[Polyline] = ()
     centres: Sequence[Polyline] = ()
@@ -25,7 +25,7 @@ class Symbol:
     filled: Sequence[Polyline] = field(default_factory=list)
 
     def moved(self, x: float, y: float) -> Symbol:
-        """Return the symbol at another position."""
+        """Return the symbol moved by a vector."""
 
         def move(line: Polyline) -> Polyline:
             return [(a + x, b + y) for a, b in line]
@@ -38,7 +38,7 @@ class Symbol:
         )
 
     def joined(self, *others: Symbol) -> Symbol:
-        """Return the symbol and others as one."""
+        """Return this symbol and others combined into one."""
         every = (self, *others)
         return Symbol(
             [line for one in every for line in one.lines],
@@ -49,7 +49,10 @@ class Symbol:
 
 
 def first_angle(height: float) -> Symbol:
-    """Return a truncated cone from its side, and to its right the view from its left (ISO 5456-2)."""
+    """Return the symbol of first-angle projection (ISO 5456-2).
+
+    It shows a truncated cone from its side, and on the right the cone as seen from its left.
+    """
     small, large, half = height / 4, height / 2, height / 2
     right = 1.25 * height
     cone = [
@@ -70,7 +73,10 @@ def first_angle(height: float) -> Symbol:
 
 
 def texture(height: float, reach: float) -> Symbol:
-    """Machining required: a hook at 60° with a bar, a line over its text (ISO 21920-1); its tip at 0."""
+    """Return the symbol for required machining, with its tip at the origin (ISO 21920-1).
+
+    It is a hook at 60° with a bar, and a line above the text.
+    """
     rise = 1.4 * height
     low, high = rise / sqrt(3), 2 * rise / sqrt(3)
     return Symbol(
@@ -82,19 +88,19 @@ def texture(height: float, reach: float) -> Symbol:
 
 
 def basic_texture(height: float) -> Symbol:
-    """Return only the hook, in brackets, for surfaces with their own symbol."""
+    """Return the basic texture symbol in brackets, which refers to surfaces that have their own symbol."""
     rise = height
     low, high = rise / sqrt(3), 1.6 * rise / sqrt(3)
     return Symbol(lines=[[(-low, rise), (0.0, 0.0), (high, 1.6 * rise)]])
 
 
 def geometric(form: str, size: float) -> Symbol:
-    """Return the sign of a geometric tolerance (ISO 1101) in a square of that size about the origin.
+    """Return the symbol of a geometric tolerance (ISO 1101) in a square of the given size about the origin.
 
     Raises
     ------
     KeyError
-        If there is no sign with that name.
+        If there is no symbol with that name.
     """
     half, r = size * 0.36, size * 0.24
     signs = {
@@ -139,13 +145,13 @@ def geometric(form: str, size: float) -> Symbol:
 
 
 def _half_round(half: float) -> Polyline:
-    """Return the upper half of a circle of that radius over the base of the sign of a profile."""
+    """Return the half circle of the profile symbols, above the origin."""
     turns = (pi * step / 16 for step in range(17))
     return [(half * cos(turn), half * (sin(turn) - 0.5)) for turn in turns]
 
 
 def arrow(tip: Point, start: Point, length: float = 3.0) -> Symbol:
-    """Return a line with a filled arrow at its tip."""
+    """Return a line with a filled arrowhead at its tip."""
     x, y = start[0] - tip[0], start[1] - tip[1]
     size = hypot(x, y) or 1.0
     x, y = x / size * length, y / size * length
@@ -154,7 +160,7 @@ def arrow(tip: Point, start: Point, length: float = 3.0) -> Symbol:
 
 
 def datum(tip: Point, angle: float, stem: float) -> tuple[Symbol, Point]:
-    """Return a filled triangle on a line at `tip`, with a stem away at an angle [rad]; and the stem's end."""
+    """Return a filled datum triangle at `tip` with a stem at an angle [rad], and the end of the stem."""
     u, v = cos(angle), sin(angle)
     top = tip[0] + 3.0 * u, tip[1] + 3.0 * v
     base = [(tip[0] - 1.7 * v, tip[1] + 1.7 * u), (tip[0] + 1.7 * v, tip[1] - 1.7 * u)]

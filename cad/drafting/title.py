@@ -14,10 +14,13 @@ _INSET = 1.5  # from the left side of a field to its text
 MADE_OUT = "iso-"
 """Before the names of fields that a stamp fills in; the lines of older drawings have names without it."""
 
+OF_PART = "part-"
+"""Before the names of fields that a stamp fills in with what is true of one part alone."""
+
 
 @dataclass(frozen=True)
 class Field:
-    """A field: its place from the lower left corner of the block, what names it, its letters."""
+    """A field of the title block: its position from the lower left corner, its caption and letters."""
 
     name: str
     caption: str
@@ -30,22 +33,27 @@ class Field:
 
     @property
     def mark(self) -> str:
-        """Return its name in files, for a stamp."""
+        """Return the name of the field in files, by which a stamp finds it."""
         return MADE_OUT + self.name
 
     @property
+    def part_mark(self) -> str:
+        """Return its name in files on the sheet of one part, for a stamp."""
+        return OF_PART + self.name
+
+    @property
     def room(self) -> float:
-        """Return the width of its text [mm on paper]."""
+        """Return the width available for the text [mm on paper]."""
         return self.width - 2 * _INSET
 
     @property
     def text_at(self) -> tuple[float, float]:
-        """Return the start of its text, from the lower left corner of the block."""
+        """Return the start of the text, from the lower left corner of the block."""
         return self.left + _INSET, self.low + 1.7
 
     @property
     def caption_at(self) -> tuple[float, float]:
-        """Return the start of its caption."""
+        """Return the start of the caption, from the lower left corner of the block."""
         return self.left + _INSET, self.low + self.height - 2.7
 
 
@@ -71,8 +79,16 @@ FIELDS = (
     Field("projection", "projection", 145, 0, 35, 9, is_stamped=False),
 )
 
-STAMPED: Mapping[str, Field] = {field.mark: field for field in FIELDS if field.is_stamped}
+ROUNDED = Field("rounded", "", 0, 0, 206, 5)
+"""The note on rounded parameters, to the left of the block; an A3 sheet has so much room for it."""
+
+STAMPED: Mapping[str, Field] = {field.mark: field for field in (*FIELDS, ROUNDED) if field.is_stamped}
 """The fields that a stamp fills in, by their marks."""
+
+STAMPED_OF_PART: Mapping[str, Field] = {
+    field.part_mark: field for field in FIELDS if field.name in ("material", "mass")
+}
+"""The fields that a stamp fills in on the sheet of one part."""
 
 GENERAL = "ISO 2768-mK"
 """General tolerances of sizes, angles and geometry of a drawing without a datum."""
@@ -89,7 +105,8 @@ _MEDIUM = ((6.0, 0.1), (30.0, 0.2), (120.0, 0.3), (400.0, 0.5), (1000.0, 0.8), (
 def general_profile(longest: float) -> float | None:
     """Return the general profile tolerance (ISO 22081) [mm] of a part by its longest side [mm].
 
-    The rule is ours: the width that ISO 2768-m gives the longest side. None beyond 4 m, where it gives none.
+    This is our own rule: the width of the tolerance that ISO 2768-m gives for the longest side. Above 4 m,
+    where ISO 2768 gives none, it returns None.
     """
     return next((2 * deviation for most, deviation in _MEDIUM if longest <= most), None)
 
@@ -104,8 +121,8 @@ _SHARE = 20  # a tolerance is at least so many times the roughness of its surfac
 def roughness(width: float) -> float:
     """Return the greatest roughness Ra [µm] of a surface whose dimension has a tolerance of this width [mm].
 
-    The rule is ours: the largest usual value of at most a twentieth of the tolerance, so that peaks and
-    valleys, some five times Ra apart, take at most a quarter of it.
+    This is our own rule: the largest preferred value of at most a twentieth of the tolerance. The height from
+    peak to valley, some five times Ra, then takes at most a quarter of the tolerance.
     """
     fitting = [value for value in _ROUGHNESS if value <= width * 1e3 / _SHARE]
     return max(fitting, default=_ROUGHNESS[0])

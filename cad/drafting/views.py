@@ -1,6 +1,6 @@
-"""The two views of a drawing: a section along the shaft (z), and the end seen along it; all in millimetres.
+"""The two views of a drawing: a section along the shaft (z), and the end view along z; all in millimetres.
 
-The section uses one of two planes through the shaft: one that is not a joint, and of these the one that
+The section plane is one of two planes through the shaft: one that is not a joint, and of these the one that
 contains the axes of more cylinders, such as oil holes and pins. In the section z points right; beside it, in
 first-angle projection, is the view from the left. Balls, shafts and round bars are not cut lengthwise (ISO
 128-3): they are drawn whole, a shaft with its hidden lines.
@@ -59,7 +59,7 @@ class View:
 
     @property
     def circles(self) -> list[Round]:
-        """Return the circles, and arcs of at least half a turn, whether they are hidden or not."""
+        """Return the visible and hidden circles, including arcs of at least half a turn."""
         turns: dict[tuple[float, ...], list[Round]] = {}
         for curve in (*self.visible, *self.hidden):
             if (arc := curve.arc) is not None:
@@ -73,11 +73,11 @@ def _straight(curves: Sequence[Curve]) -> list[tuple[Point, Point]]:
 
 
 def views(bodies: Sequence[Body], *, is_shaft: bool = False) -> tuple[View, View]:
-    """Return the section and end view; of a shaft, the view from its side instead of a section."""
+    """Return the section and the end view; for a shaft, a side view replaces the section."""
     up = _upright(bodies)
     section, end = Frame(Z, up), Frame(Z.cross(up), up)
     placed = [
-        _PlacedPart(part, body.shape.moved(place), is_shaft or _is_ball(body.shape) or _is_bar(body.shape))
+        _PlacedPart(part, body.shape.moved(place), is_shaft or _is_whole(body.shape))
         for part, body in enumerate(bodies)
         for place in body.places
     ]
@@ -85,13 +85,13 @@ def views(bodies: Sequence[Body], *, is_shaft: bool = False) -> tuple[View, View
 
 
 def is_assembly(bodies: Sequence[Body]) -> bool:
-    """Return whether this is the drawing of an assembly, with balls or bars among other parts."""
-    whole = [_is_ball(body.shape) or _is_bar(body.shape) for body in bodies]
+    """Return whether the bodies form an assembly: balls, bars or repeated parts with other parts."""
+    whole = [_is_whole(body.shape) or len(body.places) > 1 for body in bodies]
     return any(whole) and not all(whole)
 
 
 def _end(placed: Sequence[_PlacedPart], frame: Frame, section: Frame) -> View:
-    """Return the view along the shaft, opened at holes that the section does not show."""
+    """Return the view along the shaft, with broken-out sections at holes that the section does not show."""
     plane = Plane((0, 0, 0), frame.right, frame.towards)
     shapes = [one.shape for one in placed if not one.is_whole]
     normal = section.towards
@@ -128,7 +128,7 @@ def _end(placed: Sequence[_PlacedPart], frame: Frame, section: Frame) -> View:
 
 
 def _axes_across(placed: Sequence[_PlacedPart], frame: Frame) -> list[tuple[Point, Point]]:
-    """Return the axes of cylinders in the plane of the paper, with their start and end."""
+    """Return the axes of cylinders that are parallel to the paper, with their start and end."""
     axes = []
     for cylinder in (c for one in placed for c in look(one.shape).cylinders):
         if abs(cylinder.direction.dot(frame.towards)) < CLEAR:
@@ -140,7 +140,7 @@ def _axes_across(placed: Sequence[_PlacedPart], frame: Frame) -> list[tuple[Poin
 
 @dataclass(frozen=True)
 class _PlacedPart:
-    """A part where it stands; `is_whole` if a section does not cut it."""
+    """A part at its position in the model; `is_whole` if a section does not cut it."""
 
     part: int
     shape: Shape
@@ -151,14 +151,25 @@ def _is_ball(shape: Shape) -> bool:
     return all(face.geomType() == "SPHERE" for face in shape.Faces())
 
 
+def _is_whole(shape: Shape) -> bool:
+    """Return whether a part is not cut lengthwise: a ball, a bar or a bolt."""
+    return _is_ball(shape) or _is_bar(shape) or _is_bolt(shape)
+
+
+def _is_bolt(shape: Shape) -> bool:
+    """Return whether a shape is a solid cylinder about z with a hexagon head."""
+    seen = look(shape)
+    return (len(seen.planes), len(seen.cylinders), len(seen.about(Z))) == (9, 1, 1)
+
+
 def _is_bar(shape: Shape) -> bool:
-    """Return whether a shape is a full cylinder about the shaft, as the journal of an assembly."""
+    """Return whether a shape is a solid cylinder about the shaft, such as the journal of an assembly."""
     seen = look(shape)
     return (len(shape.Faces()), len(seen.planes), len(seen.about(Z))) == (3, 2, 1)
 
 
 def _upright(bodies: Sequence[Body]) -> Vector:
-    """Return the axis across the shaft whose plane with the shaft is cut."""
+    """Return the vertical axis of the section: the section plane contains it and the shaft."""
     seen = [look(body.shape.moved(place)) for body in bodies for place in body.places]
     cylinders = [c for one in seen for c in one.cylinders if not _surrounds(c)]
     planes = [plane for one in seen for plane in one.planes]
@@ -176,7 +187,7 @@ def _upright(bodies: Sequence[Body]) -> Vector:
         return sum(face.Area() for shape in placed for face in faces_across(shape, normal))
 
     def parts(normal: Vector) -> bool:
-        """Return whether there is material on both sides of the axis."""
+        """Return whether there is material on both sides of the plane."""
         sides = [_sides(body.shape.moved(place), normal) for body in bodies for place in body.places]
         depths = sorted((-min(low for low, _ in sides), max(high for _, high in sides)))
         return depths[0] > max(CLEAR, _LITTLE * depths[1])
@@ -189,12 +200,12 @@ def _upright(bodies: Sequence[Body]) -> Vector:
 
 
 def _surrounds(cylinder: Surface) -> bool:
-    """Return whether the shaft's axis is within a bore or a joint relief."""
+    """Return whether the shaft's axis runs inside a cylinder, such as a bore or a joint relief."""
     return cylinder.along(Z) and cylinder.point.cross(Z).Length < cylinder.diameter / 2
 
 
 def _sides(shape: Shape, normal: Vector) -> tuple[float, float]:
-    """Return the extent of a shape in both directions of a normal along an axis."""
+    """Return the smallest and largest coordinate of a shape along an axis normal to a plane."""
     box = shape.BoundingBox()
     corners = Vector(box.xmin, box.ymin, box.zmin), Vector(box.xmax, box.ymax, box.zmax)
     low, high = sorted(corner.dot(normal) for corner in corners)
@@ -202,7 +213,7 @@ def _sides(shape: Shape, normal: Vector) -> tuple[float, float]:
 
 
 def _section(placed: Sequence[_PlacedPart], frame: Frame) -> View:
-    """Return the view of a section: cut faces, shapes behind the plane, and uncut parts."""
+    """Return the section: cut faces, shapes behind the plane, and uncut parts."""
     sections = [(one, face) for one in placed for face in faces_across(one.shape, frame.towards)]
     faces = [face for _, face in sections]
     behind = [shape for one in placed for shape in _seen(one, frame.towards)]
@@ -218,7 +229,7 @@ def _section(placed: Sequence[_PlacedPart], frame: Frame) -> View:
 
 
 def _seen(one: _PlacedPart, normal: Vector) -> list[Shape]:
-    """Return the remainder of a cut part: its half behind the plane, or all of an uncut part."""
+    """Return the visible remainder of a part: the half behind the plane, or all of an uncut part."""
     if not one.is_whole:
         return half_behind(one.shape, normal)
     return [one.shape] if _sides(one.shape, normal)[0] < -CLEAR else []

@@ -49,7 +49,7 @@ _DIRECTORY, _LARGE_DIRECTORY = b"PK\x05\x06", b"PK\x06\x07"  # end records of ZI
 
 
 def admitted(content: bytes) -> bytes:
-    """Return the file in the form in which FreeCAD may open it.
+    """Return the file in a form that is safe for FreeCAD to open.
 
     Raises
     ------
@@ -101,7 +101,7 @@ def _check_directory(content: bytes) -> None:
             "package", f"it is not a complete ZIP package (its directory is missing): {AGAIN}"
         )
     if content.startswith(_LARGE_DIRECTORY, max(0, place - 20)):
-        raise UnreadableModel("package", f"it is a ZIP64 package, which states its size twice: {AGAIN}")
+        raise UnreadableModel("package", f"it is a ZIP64 package, which this service does not read: {AGAIN}")
     entries, size = struct.unpack("<HI", content[place + 10 : place + 16])
     if entries > MOST_PARTS or size > MOST_PARTS * 400:
         raise UnreadableModel("too_large", f"it has {entries} parts; a model may have at most {MOST_PARTS}")
@@ -142,9 +142,9 @@ class _Document:
         return self.named
 
     def _check_encoding(self, version: str, encoding: str | None, standalone: int) -> None:
-        """Refuse encodings in which FreeCAD might read other elements than this check.
+        """Refuse encodings in which FreeCAD might read different elements from those that this check sees.
 
-        FreeCAD writes UTF-8.
+        FreeCAD itself writes UTF-8.
         """
         if encoding is not None and encoding.lower() != "utf-8":
             raise self._of_another_encoding()
@@ -175,7 +175,7 @@ def _check_element(tag: str, attributes: dict[str, str]) -> None:
     name = (attributes.get("name") or attributes.get("Name") or tag)[:60]
     if tag == "Python" or "Python" in kind:
         what = f"{name!r} ({kind or tag}) is a Python feature or a macro, which is never run here"
-        raise UnreadableModel("python_feature", f"{what}: replace it by features of Part or PartDesign")
+        raise UnreadableModel("python_feature", f"{what}: replace it with features of Part or PartDesign")
     if _REFUSED_PROPERTIES.fullmatch(kind) or kind in _READING_FILES:
         raise UnreadableModel("reads_files", f"{name!r} ({kind}) reads another file: embed its shape")
     if tag in _LINKS and attributes.get("file"):

@@ -109,7 +109,7 @@ class Filters(ctypes.Structure):
 def deny_calls(libc: ctypes.CDLL) -> None:
     """Have the Linux kernel refuse the calls in `DENIED`, in all threads and permanently.
 
-    Raises OSError if the kernel cannot do this; in that case nothing is opened.
+    Raises OSError if the kernel cannot do this; the caller then opens no file.
     """
     audited, seccomp, denied = DENIED[platform.machine()]
     signal_one, limit_one, clone = OWN[platform.machine()]
@@ -155,7 +155,7 @@ READABLE = (
 def keep_to_files(libc: ctypes.CDLL, writable: str) -> None:
     """Let this process only read the system's files and write to one folder, if the kernel supports it.
 
-    Raises OSError if the kernel supports it but refuses.
+    Raises OSError if the kernel supports the restriction but refuses it.
     """
     create, add, restrict, reading, of_a_file = 444, 445, 446, 0b1101, 0b101
     rules = libc.syscall(create, None, 0, 1)
@@ -177,7 +177,7 @@ def keep_to_files(libc: ctypes.CDLL, writable: str) -> None:
 
 
 def mapped() -> int:
-    """Return the address space of this process [bytes]."""
+    """Return the size of this process's address space [bytes]."""
     with open("/proc/self/statm") as statm:
         return int(statm.read().split()[0]) * resource.getpagesize()
 
@@ -190,7 +190,7 @@ def limit(kind: int, value: int) -> None:
 
 
 def limit_time(seconds: float) -> None:
-    """Have the kernel end this process after this additional processor time [s], over all threads."""
+    """Have the kernel end this process after additional processor time [s], over all threads."""
     used = resource.getrusage(resource.RUSAGE_SELF)
     soft = math.ceil(used.ru_utime + used.ru_stime + seconds * (os.cpu_count() or 1)) + 1
     resource.setrlimit(resource.RLIMIT_CPU, (soft, resource.getrlimit(resource.RLIMIT_CPU)[1]))
@@ -208,7 +208,7 @@ class Refused(Exception):
 
 
 def quantity_of(app: Any, text: str) -> Any:
-    """Return the content of a cell as a constant; None if it is a formula or text."""
+    """Return the content of a cell if it is a constant; None if it is a formula or text."""
     try:
         return app.Units.Quantity(text.lstrip("=").strip()) if text.strip("= ") else None
     except Exception:
@@ -216,7 +216,7 @@ def quantity_of(app: Any, text: str) -> Any:
 
 
 def unit_of(quantity: Any) -> str | None:
-    """Return the unit for a quantity; None for kinds that are not supported."""
+    """Return the unit of a quantity; None for kinds that are not supported."""
     if not any(quantity.Unit.Signature):
         return "1"
     return UNITS.get(quantity.Unit.Type)
@@ -235,7 +235,7 @@ def cells(app: Any, sheet: Any) -> Iterator[tuple[str, float, str]]:
 
 
 def constraints(sketch: Any) -> Iterator[tuple[str, float, str]]:
-    """Yield every named driving constraint of a sketch that no expression binds."""
+    """Yield every named driving constraint of a sketch that no expression sets."""
     bound = {entry[0].lstrip(".") for entry in sketch.ExpressionEngine}
     for number, constraint in enumerate(sketch.Constraints):
         name = constraint.Name
@@ -262,7 +262,7 @@ def parameters(app: Any, document: Any) -> list[list[Any]]:
 
 
 def give(app: Any, document: Any, given: Iterable[list[Any]]) -> None:
-    """Set parameters, each as [object, kind, key, value, unit].
+    """Set parameters, each given as [object, kind, key, value, unit].
 
     Constraints of a sketch are set one by one, and in some orders an intermediate state has no solution.
     Constraints that fail are set again after the others.
@@ -293,7 +293,7 @@ def give_one(app: Any, document: Any, name: str, kind: str, key: str, value: flo
 
 
 def recompute(document: Any) -> None:
-    """Recompute the whole document; raise an error for objects that fail."""
+    """Recompute the whole document; raise an error if an object fails."""
     document.recompute(None, True, True)
     faulty = [thing for thing in document.Objects if "Invalid" in thing.State or not thing.isValid()]
     if faulty:
@@ -321,7 +321,7 @@ def is_visible(thing: Any) -> bool:
 
 
 def is_empty(thing: Any) -> bool:
-    """Return whether a feature of Part or PartDesign has a shape without any content."""
+    """Return whether a feature of Part or PartDesign has an empty shape."""
     try:
         if not thing.isDerivedFrom("Part::Feature") or thing.isDerivedFrom("Part::Part2DObject"):
             return False
@@ -331,9 +331,10 @@ def is_empty(thing: Any) -> bool:
 
 
 def sources(thing: Any) -> set[str]:
-    """Return the names of the objects from whose shapes an object makes its own.
+    """Return the names of the objects from whose shapes an object creates its own.
 
-    Expressions and attachments do not count: they move an object or set its sizes.
+    Objects that affect it only by expressions or attachments do not count, because these only move it or set
+    its sizes.
     """
     names = set[str]()
     for name in thing.PropertiesList:
@@ -374,7 +375,7 @@ class Census:
         ]
 
     def require_solids(self) -> None:
-        """Refuse a document without an end, or one whose last feature comes out empty."""
+        """Refuse a document that has no end object, or one whose last feature has an empty shape."""
         for thing in self.failed:
             left = ", ".join(one.Label for one in self.ends if one.Name in sources(thing))
             what = f"{thing.Label} comes out empty, and is made of {left}"
@@ -384,7 +385,7 @@ class Census:
             raise Refused("no_solid", f"the file contains no visible solid: {remedy}")
 
     def at_import(self) -> dict[str, Any]:
-        """Return what later drawings are compared with: ends with their numbers of solids, other solids."""
+        """Return the state for later comparisons: the ends with their numbers of solids, other solids."""
         return {
             "parts": [[thing.Name, count_solids(thing)] for thing in self.ends],
             "inner": [thing.Name for thing in self.inner],
@@ -392,7 +393,7 @@ class Census:
 
 
 def require_same_ends(document: Any, there: Census, at_import: dict[str, Any]) -> None:
-    """Refuse a drawing whose ends, or the numbers of their solids, are not those at the import."""
+    """Refuse a drawing whose ends, or the numbers of their solids, differ from those at the import."""
     wanted = dict(at_import["parts"])
     for name in (*wanted, *at_import["inner"]):
         thing = document.getObject(name)
@@ -416,7 +417,7 @@ def require_same_ends(document: Any, there: Census, at_import: dict[str, Any]) -
 
 
 def left_out(document: Any, there: Census) -> Iterator[str]:
-    """Yield a sentence about each visible or solid object of a document that becomes no part."""
+    """Yield a sentence about each visible or solid object of a document that does not become a part."""
     for thing in there.hidden:
         yield f"{thing.Label} is hidden and left out"
     for thing in there.ends:
@@ -445,7 +446,7 @@ def faces_of(thing: Any) -> int:
 
 
 def solids(there: Census) -> list[tuple[str, float, bytes]]:
-    """Return every solid of the ends where it stands: name, volume [mm³], shape as text."""
+    """Return every solid of the ends at its position: name, volume [mm³], and shape as text."""
     listed = []
     for thing in there.ends:
         shape = thing.Shape.copy()
@@ -459,14 +460,14 @@ def solids(there: Census) -> list[tuple[str, float, bytes]]:
 
 
 def opened(app: Any, file: str) -> Any:
-    """Return the document of a file, and close all others."""
+    """Open the document of a file, and close all others."""
     for name in list(app.listDocuments()):
         app.closeDocument(name)
     return app.openDocument(file, True)
 
 
 def as_saved(app: Any, file: str) -> dict[str, Any]:
-    """Return the ends of a file at its own values, for models imported before ends were recorded."""
+    """Return the ends of a file with its saved values, for models imported before ends were recorded."""
     document = opened(app, file)
     recompute(document)
     there = Census(document)
@@ -475,7 +476,7 @@ def as_saved(app: Any, file: str) -> dict[str, Any]:
 
 
 def answer(app: Any, request: dict[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
-    """Return the answer to one request, with the shapes that follow it."""
+    """Return the answer to one request, and the shapes to send after it."""
     begun, file = time.monotonic(), request["file"]
     describes = request["do"] == "describe"
     at_import = None if describes else request.get("at_import") or _first_use(app, file)
@@ -501,7 +502,7 @@ def answer(app: Any, request: dict[str, Any]) -> tuple[dict[str, Any], list[byte
 
 
 def _first_use(app: Any, file: str) -> dict[str, Any]:
-    """Return `as_saved` of a file, determined once: a process serves one file."""
+    """Return the result of `as_saved` for the file of this process, computed only once."""
     if file not in _saved:
         _saved[file] = as_saved(app, file)
     return _saved[file]

@@ -47,7 +47,7 @@ def standard_width(bore: Array) -> Array:
 
 
 def _standard(column: str, bore: Array) -> Array:
-    """Return a dimension interpolated between the rows of the table, and proportional to the bore beyond."""
+    """Return a dimension, interpolated within the table and proportional to the bore beyond it."""
     bores = SERIES_02["inner_diameter"] / 1e3
     nearest = np.clip(bore, bores[0], bores[-1])
     return np.interp(nearest, bores, SERIES_02[column] / 1e3) * (bore / nearest)

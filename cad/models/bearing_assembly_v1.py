@@ -21,7 +21,7 @@ LINING_DENSITY = 3110.0  # kg/m³, of AlSn20Cu: mixture of its elements by mass
 
 @units("m", returns="1")
 def is_a_gap(length: Array) -> Truth:
-    """Return whether a length [m] is a gap that the kernel can distinguish from none: at least 0.1 µm."""
+    """Return whether a length [m] is large enough for the kernel to treat as a gap: at least 0.1 µm."""
     return length >= 1e-7
 
 
@@ -71,6 +71,7 @@ class BearingAssembly(CadModel):
         "journal_length": {"perpendicularity": 1, "to": "A"},
         "width": {},
         "lining_thickness": {},
+        "crush_height": {},
         "housing_bore": {"cylindricity": 0.5},
         "housing_breadth": {},
         "block_height": {},
@@ -233,25 +234,25 @@ class BearingAssembly(CadModel):
         )
 
     def bounding_box(self) -> Box:
-        """Return the box of the housing, or of the journal where it is longer."""
+        """Return the box of the housing, extended to the journal where that is longer."""
         a, b = mm(self.A) / 2, max(mm(self.B), mm(self.L_j)) / 2
         return Box((-a, -mm(self.H_c) - 2 * mm(self.a), -b), (a, mm(self.H_b), b))
 
     def dimensions(self, seen: Mapping[str, PartSurfaces]) -> dict[str, float]:
         """Return every parameter.
 
-        The clearance is read between bore and journal, the crush height at the joint.
+        The clearance is read between bore and journal, the crush height at a joint.
         """
         journal, lining, back = seen["journal"], seen["upper_lining"], seen["upper_back"]
         block, cap = seen["block"], seen["cap"]
-        bore, outside = lining.rings(Z), back.rings(Z)[-1]
+        bore, outside, joint = lining.rings(Z), back.rings(Z)[-1], back.levels(Y)[0]
         return {
             "journal_diameter": journal.diameters(Z)[0],
             "diametral_clearance": bore[0][0].diameter - journal.diameters(Z)[0],
             "wall": Size.wall(bore[0], outside),
             "width": back.length(Z),
             "lining_thickness": Size.wall(bore[0], bore[-1]),
-            "crush_height": (block.levels(Y)[0] - cap.levels(Y)[-1]) / 2,
+            "crush_height": Size.distance(-joint + 0.0, bore[0], back.planes_at(Y, joint)),
             "housing_bore": block.diameters(Z)[0],
             "housing_breadth": block.length(X),
             "block_height": block.length(Y),

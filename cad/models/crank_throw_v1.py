@@ -102,14 +102,14 @@ class CrankThrow(CrankRules):
         return (Part(self.id, throw.solid(), volume(throw)),)
 
     def bounding_box(self) -> Box:
-        """Return the webs and counterweights together."""
+        """Return the box of the webs and counterweights together."""
         throw = self.drawn()
         web, end = throw.outline, throw.journal_end
         wide = max(web.half_width, web.counterweight * sin(web.half_angle))
         return Box((-max(web.half_width, web.counterweight), -wide, -end), (web.tip, wide, end))
 
     def shaft(self) -> Shaft:
-        """Return the planes at which it is held and loaded: its end faces at -z and +z."""
+        """Return the planes at which an analysis holds and loads the throw: its end faces at -z and +z."""
         end = self.drawn().journal_end
         return Shaft(-end, end)
 

@@ -141,7 +141,7 @@ class DeepGrooveBearing(BallRow):
         return (self.B_c <= 0) | (self.D_p <= (self.D_pw - self.t_c) * np.sin(0.97 * pi / self.n))
 
     def build(self) -> tuple[Part, ...]:
-        """Return two rings, the balls, and the cage if there is one."""
+        """Return two rings, the balls, and the cage if the bearing has one."""
         shoulder, chamfer = 0.3 * mm(self.D_w), 0.05 * min(mm(self.h), mm(self.B))
         parts: list[Part] = [*self.rings_and_balls(self.ring(shoulder, chamfer))]
         if self.B_c > 0:

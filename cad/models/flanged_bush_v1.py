@@ -227,7 +227,7 @@ class FlangedBush(CadModel):
         remedy="make the hole as wide as the groove, or change it by 1 %",
     )  # fmt: skip
     def hole_clears_groove_edge(self) -> Truth:
-        """An oil hole wider than its groove is wider by 1 %; for less, OpenCASCADE returns wrong solids."""
+        """An oil hole wider than its groove is wider by 1 %; for less, OpenCASCADE builds wrong solids."""
         return (self.t_g <= 0) | (self.w_g <= 0) | (self.d_h <= self.w_g) | (self.d_h >= 1.01 * self.w_g)
 
     @require(
@@ -265,7 +265,7 @@ class FlangedBush(CadModel):
         return Box((-radius, -radius, 0.0), (radius, radius, mm(self.B)))
 
     def dimensions(self, seen: Mapping[str, PartSurfaces]) -> dict[str, float]:
-        """Return every length of the bush; without groove or hole, their sizes are omitted."""
+        """Return every length of the bush; sizes of groove and hole are omitted if the bush has none."""
         bush = seen["bush"]
         levels, holes = bush.levels(Z), [c for c in bush.cylinders if c.along(Y)]
         rings = bush.rings(Z)

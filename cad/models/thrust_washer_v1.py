@@ -5,7 +5,8 @@ The docstring of the class below explains the parameters to users.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import atan2, cos, degrees, pi, radians, sin, sqrt
@@ -16,7 +17,7 @@ from cadquery.func import cut, extrude, face, segment, wire
 
 from cad.model import BRONZE, Box, CadModel, Part, mm
 from cad.revolution import nearest, sheet_under_arc
-from cad.surfaces import PartSurfaces, Size, X, Y, Z
+from cad.surfaces import PartSurfaces, Size, Surface, X, Y, Z
 from templates.core.language.template import (
     Array,
     Truth,
@@ -53,7 +54,7 @@ def is_free_at_crown(washer: str, grooves: Array) -> Truth:
 
 @units(None, "m", returns="1")
 def takes_a_pin(washer: str, hole: Array) -> Truth:
-    """Return whether there is no hole for a pin, or the washer is a full ring."""
+    """Return whether a pin hole is allowed: there is none, or the washer is a full ring."""
     return (hole <= 0) | (washer == "full")
 
 
@@ -191,6 +192,7 @@ class ThrustWasher(CadModel):
         "outer_diameter": {},
         "thickness": {"perpendicularity": 1, "to": "A"},
         "pin_hole_diameter": {},
+        "pin_circle_diameter": {},
         "oil_groove_width": {},
         "oil_groove_depth": {},
         "lug_width": {},
@@ -241,7 +243,7 @@ class ThrustWasher(CadModel):
     def p_g(self) -> Array:
         """Pitch of the grooves.
 
-        In a half washer also twice the distance from the joint to the first groove.
+        In a half washer it is also twice the distance from the joint to the first groove.
         """
         return self.d * np.sin(half_pitch(self.washer, self.n_g))
 
@@ -306,7 +308,7 @@ class ThrustWasher(CadModel):
 
     @require("pin_hole_diameter", "lug_width", remedy="use 0 for none")
     def features_are_drawable(self) -> Truth:
-        """The sizes of pin hole and lug are 0, or at least the 10 µm that the kernel can build reliably."""
+        """The sizes of the pin hole and the lug are 0, or at least 10 µm so that the kernel is reliable."""
         return drawable(self.d_p) & drawable(self.w_l)
 
     def build(self) -> tuple[Part, ...]:
@@ -315,7 +317,7 @@ class ThrustWasher(CadModel):
         return (Part("washer", washer.solid(), washer.volume(), BRONZE, density=8800, material="CuSn8P"),)
 
     def drawn(self) -> Washer:
-        """Return the parameters as radii and halves."""
+        """Return the parameters converted to radii and half lengths."""
         return Washer(
             bore=mm(self.d) / 2,
             outside=mm(self.D) / 2,
@@ -333,7 +335,7 @@ class ThrustWasher(CadModel):
     def bounding_box(self) -> Box:
         """Return a box as wide as the outer diameter and as high as the lug.
 
-        A half washer is on the crown's side.
+        The box of a half washer is on the crown's side.
         """
         R, top = mm(self.D) / 2, mm(self.D) / 2 + (mm(self.h_l) if self.w_l > 0 else 0.0)
         return Box((-R, 0.0 if self.washer == "half" else -R, 0.0), (R, top, mm(self.t)))
@@ -359,12 +361,23 @@ class ThrustWasher(CadModel):
             width = nearest((2 * abs(p.point.dot(p.direction)) for p in sides), 2 * wanted.half_groove)
             faces = [p for p in sides if abs(2 * abs(p.point.dot(p.direction)) - width) < 1e-6]
             sizes["oil_grooves"] = float(len(floors))
-            sizes["oil_groove_width"] = Size.distance(width, faces, faces)
+            sizes["oil_groove_width"] = Size.repeated(_across(width, faces), "oil grooves")
             sizes["oil_groove_depth"] = washer.between(Z, 1, 2)
         if pins:
-            sizes["pin_circle_diameter"] = Size.circle(pins)
+            sizes["pin_circle_diameter"] = Size.circle(pins, washer.rings(Z)[0])
         if wanted.half_lug > 0:
             half, top = nearest((abs(x) for x in washer.levels(X)), wanted.half_lug), washer.levels(Y)[-1]
             sizes["lug_width"] = washer.apart(X, -half, half, Vector(0, top, 0))
             sizes["lug_height"] = Size.distance(top - about[-1] / 2, outside, washer.planes_at(Y, top))
         return sizes
+
+
+def _across(width: float, sides: Sequence[Surface]) -> Iterator[Size]:
+    """Yield the width of each groove, between its two sides."""
+    grooves = defaultdict[tuple[float, float], list[Surface]](list)
+    for side in sides:
+        along = side.direction.cross(Z)
+        outwards = along if side.middle is not None and along.dot(side.middle) > 0 else -along
+        grooves[round(outwards.x, 6) + 0.0, round(outwards.y, 6) + 0.0].append(side)
+    for one, other in grooves.values():
+        yield Size.distance(width, [one], [other])

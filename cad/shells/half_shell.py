@@ -10,6 +10,7 @@ from cadquery.func import cut, extrude, face, fuse, polyline, segment, wire
 from scipy.integrate import quad
 
 from cad.revolution import Point, area, drill, drilled_volume, outline, sheet_under_arc, turned, turned_volume
+from cad.shells.eccentric import EccentricBore
 from cad.shells.relief import Relief
 
 _BEYOND = 10.0  # [deg] by which the tool for a groove from joint to joint extends beyond the joints
@@ -69,6 +70,13 @@ class HalfShell:
     tang: Tang | None
     flange: Flange | None
     lift: float = 0.0  # [rad]
+    offset: float = 0.0  # of the axis of an eccentric bore, which has no relief and is not free
+    reduction_height: float = 0.0  # above the joint, where the wall reduction is measured
+
+    @property
+    def eccentric(self) -> EccentricBore:
+        """Return the bore, whose axis may be offset."""
+        return EccentricBore(self.bore, self.offset)
 
     @property
     def turn(self) -> float:
@@ -119,10 +127,10 @@ class HalfShell:
     def lining_joint(self) -> list[Point]:
         """Return the section of the lining at its joint.
 
-        If the groove divides it, the piece on the side +z.
+        If the groove divides the lining, return the section of the piece on the side +z.
         """
         b, c, s = self.half_width, self.inner_chamfer, self.lining
-        inside = self.bore + (self.relief.depth if self.relief else 0.0)
+        inside = self.eccentric.joint + (self.relief.depth if self.relief else 0.0)
         up = [(s, max(self.bore + c - s, 0.0)), (min(self.bore + c, s), max(self.bore + c - s, 0.0))]
         up.append((inside, max(self.bore + c - inside, 0.0)))
         if c == 0:
@@ -135,7 +143,7 @@ class HalfShell:
         return outline(*low, *high, *self._notch(inside, s))
 
     def _notch(self, inside: float, outside: float) -> list[Point]:
-        """Return the corners of a groove that extends from joint to joint, at its height above the inside."""
+        """Return the corners of a groove that extends from joint to joint, above the inside."""
         groove = self.groove
         if groove is None or not groove.is_whole or groove.bottom <= inside or groove.bottom >= outside:
             return []
@@ -164,9 +172,9 @@ class HalfShell:
         return body
 
     def _leg(self, body: Shape, side: int) -> Shape:
-        """Return the extrusion of the joint face.
+        """Extrude the joint face to a leg.
 
-        Another face with vertices 1e-15 mm off would change the bytes.
+        Another face with vertices that differ by 1e-15 mm would change the bytes.
         """
         normal = Vector(side * sin(self.lift), -cos(self.lift), 0)
         feet = [f for f in body.Faces() if f.geomType() == "PLANE" and f.normalAt().dot(normal) > 1 - 1e-12]
@@ -174,13 +182,13 @@ class HalfShell:
         return extrude(foot, (normal * self.crush).toTuple())
 
     def _at_joint(self, body: Shape, side: int) -> Shape:
-        """Return a shape that was built at y = 0, rotated to the joint on that side."""
+        """Rotate a shape that was built at y = 0 to the joint on the given side."""
         if self.lift == 0:
             return body
         return body.rotate(Vector(0, 0, 0), Vector(0, 0, 1), degrees(side * self.lift))
 
     def _lip(self, tang: Tang) -> Shape:
-        """Return the box of the locating lip, which starts inside the back."""
+        """Return the box of the locating lip, which begins inside the back."""
         edge = sqrt(self.outside**2 - tang.length**2)
         foot = edge - 0.1 * (self.outside - self.lining)
         if self.groove and self.groove.bottom >= foot:
@@ -192,7 +200,7 @@ class HalfShell:
         return self._at_joint(lip, 1)
 
     def _ring(self, groove: Groove) -> Shape:
-        """Return the solid that the groove removes, starting inside the bore."""
+        """Return the solid that the groove removes; it begins inside the bore."""
         w, low = groove.half_width, 0.9 * self.bore
         section = outline((low, -w), (groove.bottom, -w), (groove.bottom, w), (low, w))
         turn = 180.0 + 2 * _BEYOND if groove.is_whole else degrees(groove.turn)
@@ -215,7 +223,7 @@ class HalfShell:
         return self._with_legs(body, self.lining_joint())
 
     def _cone(self, side: int) -> Shape:
-        """Return the solid that the bore's chamfer removes at one end, with some oversize."""
+        """Return the solid, slightly oversized, that the chamfer of the bore removes at one end."""
         c, b, r = self.inner_chamfer, self.half_width, self.bore
         over, inside = 0.5 * c, 0.1 * r
         section = outline(
@@ -228,7 +236,10 @@ class HalfShell:
         """Return the cross-section of the lining with both reliefs."""
         right, left = self.lift, pi - self.lift
         edges = [self._arc(self.lining, right, left, z)]
-        deep, inner = self.bore, [self._arc(self.bore, right, left, z)]
+        deep, inner = self.eccentric.joint, [self._arc(self.bore, right, left, z)]
+        if self.offset > 0:
+            ends = [self._at(deep, end, z) for end in (right, left)]
+            inner = [Edge.makeThreePointArc(ends[0], Vector(0, self.bore, z), ends[1])]
         if self.relief:
             deep, angle = self.bore + self.relief.depth, self.relief.angle
             inner = [
@@ -269,7 +280,7 @@ class HalfShell:
     def lining_volume(self) -> float:
         """Return the volume of the whole lining, in one piece or two [mm³]."""
         r, s = self.bore, self.lining
-        volume = (s * s - r * r) * self.turn * self.half_width
+        volume = self.eccentric.sector(s, self.turn) * 2 * self.half_width
         volume += 2 * area(self.lining_joint()) * self.crush * (2 if self.is_split else 1)
         volume -= self._groove_between(r, s) + self._hole(r, s) + 2 * self._chamfer()
         if self.relief:
@@ -282,19 +293,23 @@ class HalfShell:
         if self.groove is None or self.groove.bottom <= inside:
             return 0.0
         turn = self.turn if self.groove.is_whole else self.groove.turn
-        return (min(self.groove.bottom, outside) ** 2 - inside**2) * self.groove.half_width * turn
+        within = EccentricBore(inside, self.offset if inside == self.bore else 0.0)
+        return within.sector(min(self.groove.bottom, outside), turn) * 2 * self.groove.half_width
 
     def _hole(self, inside: float, outside: float) -> float:
+        offset = self.offset if inside == self.bore else 0.0
         if self.groove is None or self.groove.bottom <= inside:
-            return drilled_volume(self.hole, outside, inside)
+            return drilled_volume(self.hole, outside, inside, offset=offset)
         bottom = min(self.groove.bottom, outside)
-        return drilled_volume(self.hole, outside, inside, bottom, self.groove.half_width)
+        return drilled_volume(self.hole, outside, inside, bottom, self.groove.half_width, offset)
 
     def _chamfer(self) -> float:
         """Return the volume of lining that the bore's chamfer removes at one end [mm³]."""
         c, r = self.inner_chamfer, self.bore
         if c == 0:
             return 0.0
+        if self.offset > 0:
+            return self.eccentric.chamfered(c, self.lining)
         reach = min(c, self.lining - r)
         section = outline((r, 0.0), (r, c), (r + reach, c - reach), (r + reach, 0.0))
         return turned_volume(section, degrees(self.turn))

@@ -56,7 +56,7 @@ class Relief:
 
 
 def read_relief(bore: float, axis: float, radius: float) -> tuple[float, float]:
-    """Return the height and depth [mm] of a relief from the radius of the bore and the relief's circle."""
+    """Return the height and depth [mm] of a relief, from the bore's radius and the relief's circle."""
     depth = axis + radius - bore
     fall = depth * (2 * bore + depth) / (2 * axis) - depth  # inverts `Relief.axis`
     return sqrt(fall * (2 * bore - fall)), depth

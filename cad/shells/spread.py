@@ -58,7 +58,7 @@ class FreeShellReadback(ShellReadback):
 
     @property
     def angle(self) -> float:
-        """Return the angle from the crown to a joint [rad]; the legs are tangential there."""
+        """Return the angle from the crown to a joint [rad]; the legs are tangential to the arc there."""
         return nearest(map(_from_crown, self._joints()), pi / 2 - self.wanted.lift)
 
     def _upright(self) -> list[Surface]:
@@ -83,6 +83,7 @@ class FreeShellReadback(ShellReadback):
         return {
             "inner_diameter": 2 * fitted - self.wall,
             "wall": self.wall,
+            "wall_reduction": 0.0,
             "width": self.back.length(Z),
             "lining_thickness": self.lining_wall,
             "crush_height": crush,
@@ -96,7 +97,7 @@ class FreeShellReadback(ShellReadback):
 
 
 def reach_of(shell: HalfShell) -> tuple[float, float, float]:
-    """Return the extents of a shell [mm]: to the side without a tang, to the side with one, and downwards."""
+    """Return the extents of a shell [mm]: on the side without a tang, on the side with one, and downwards."""
     lift, crush = shell.lift, shell.crush
     collar = shell.flange.radius if shell.flange else shell.outside
     lip = shell.outside + shell.tang.height if shell.tang else 0.0

@@ -97,6 +97,7 @@ class BearingLoad(Cylinder):
         **OVERLAP,
         "crank_angle_step": "30 deg",
     }
+    main_results = ("speed", "crankpin_load_max", "main_load_max", "wristpin_load_max", "mean_torque")
     criteria = {
         "crankpin_load": {
             "require": "crankpin_load_max <= permissible_crankpin_load",

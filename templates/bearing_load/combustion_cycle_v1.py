@@ -72,6 +72,7 @@ class CombustionCycle(Template):
         "ratio_of_specific_heats": 1.32,
         "steps": 72,
     }
+    main_results = ("peak_pressure", "peak_pressure_angle", "burnt_heat", "closed_mean_effective_pressure")
     criteria = {
         "peak_pressure": {
             "require": "peak_pressure <= permissible_peak_pressure",
@@ -113,7 +114,7 @@ class CombustionCycle(Template):
 
     @shared
     def cylinder(self) -> ClosedCylinder:
-        """Return the cylinder with closed valves."""
+        """Return the cylinder while its valves are closed."""
         burning = HeatRelease(self.Q, FIRING + self.t_s, self.t_d, self.a, self.m)
         return closed_cylinder(
             self.n, self.V_h, self.epsilon, self.p_s, self.ic, self.eo, self.gamma, burning

@@ -1,7 +1,7 @@
 """A whole engine of any layout: crankpin and firing angles, balance by orders, torque, all bearing loads.
 
-In line, V, boxer, radial; shared or split pins; articulated rods; odd firing; two and four strokes; cylinders
-that may differ; mains with clearance.
+The engine may be an in-line, V, boxer or radial engine with two or four strokes. It may have shared or split
+pins, articulated rods, odd firing, cylinders that differ, and mains with clearance.
 """
 
 from __future__ import annotations
@@ -153,6 +153,9 @@ class Engine(ArticulatedEngine):
         "web_positions": {"value": [22, 72, 132], "unit": "mm"},
         **SHAFT,
     }
+    main_results = (
+        "speed", "indicated_mean_effective_pressure", "mean_torque", "mean_power", "shaking_force_max",
+    )  # fmt: skip
     criteria = {
         "main_load": {
             "require": "main_load_max <= permissible_main_load",
@@ -253,7 +256,7 @@ class Engine(ArticulatedEngine):
 
     @shared
     def played(self) -> SupportReactions | None:
-        """Return the loads of mains with clearance; None without clearance or without crank sections."""
+        """Return the loads of mains with clearance; None without a clearance or without crank sections."""
         shafts = flexibilities(
             self.z_m, self.places, self.web_places, self.layout.throw, self.layout.pin, self.crank.r,
             self.sections,

@@ -124,6 +124,7 @@ class Flywheel(Cylinder):
         "damper_inertia": "0.05 kg*m**2",
         "driven_inertia": "0.5 kg*m**2",
     }
+    main_results = ("speed", "mean_torque", "mean_power", "energy_fluctuation", "flywheel_inertia")
     criteria = {
         "flywheel": {
             "require": "flywheel_inertia <= planned_flywheel_inertia",

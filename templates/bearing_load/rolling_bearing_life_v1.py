@@ -1,6 +1,7 @@
 """Rating life of a rolling bearing by ISO 281, under a load that is constant or repeats with the crank.
 
-For the ball bearing at the end of a crankshaft, and for any bearing whose capacities a catalogue states.
+Use it for the ball bearing at the end of a crankshaft, and for any bearing whose load ratings a catalogue
+states.
 """
 
 from __future__ import annotations
@@ -68,6 +69,7 @@ class RollingBearingLife(Template):
         "calculation_factor": 13,
         "reliability": 0.95,
     }
+    main_results = ("equivalent_load", "speed", "life_in_hours", "static_safety")
     criteria = {
         "life": {
             "require": "life_in_hours >= required_life",

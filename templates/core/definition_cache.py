@@ -38,13 +38,13 @@ def may_write() -> bool:
 
 
 def file(name: str) -> str | bool:
-    """Return the path of Lark's cache file, or False if none can be used; Lark validates its content."""
+    """Return the path of Lark's cache file, which Lark validates, or False if no cache can be used."""
     kept = place(name)
     return str(kept) if may_write() or kept.is_file() else False
 
 
 def from_folder(name: str, make: Callable[[Path | None], T]) -> T:
-    """Create an object from a folder of prepared files, or without one if the folder cannot be written.
+    """Create an object from a folder of prepared files, or without a folder if none can be written.
 
     A folder is filled under a temporary name and then renamed, so that it is always complete.
 

@@ -45,7 +45,7 @@ class Fault:
         return (self.name, *self.also)
 
     def within(self, prefix: str) -> Fault:
-        """Return the same fault as seen from the enclosing design: `speed` becomes `film.speed`."""
+        """Return the same fault under its name in the enclosing design: `speed` becomes `film.speed`."""
         name, *also = (f"{prefix}.{name}" for name in self.names)
         return replace(self, name=name, also=tuple(also))
 
@@ -155,7 +155,7 @@ _brief.maxlevel, _brief.maxlist, _brief.maxdict, _brief.maxstring, _brief.maxoth
 def excerpt(raw: Any) -> str:
     """Return a short ASCII excerpt of any received value.
 
-    It is short however long or deep the value is, and valid in JSON.
+    It is short even if the value is long or deeply nested, and valid in JSON.
     """
     if isinstance(raw, int) and raw.bit_length() > 200:
         return "a number of more than 60 digits"

@@ -12,7 +12,7 @@ _reporter: ContextVar[Reporter | None] = ContextVar("reporter", default=None)
 
 
 def report(fraction: float, text: str) -> None:
-    """Report the completed fraction (0 to 1) of the work, and a text on the next action."""
+    """Report the completed fraction (0 to 1) of the work, and a text about the next action."""
     reporter = _reporter.get()
     if reporter is not None:
         reporter(fraction, text)
@@ -30,7 +30,7 @@ def reporting(reporter: Reporter | None) -> Iterator[None]:
 
 @contextmanager
 def part_of_progress(number: int, count: int) -> Iterator[None]:
-    """Scale `report` within the context to one of `count` equal parts, counted from 0."""
+    """Scale `report` within the context to one of `count` equal parts, numbered from 0."""
     whole = _reporter.get()
     if whole is None or count == 1:
         yield

@@ -1,1 +1,1 @@
-"""Example worksheets: the bearing of Bhadke, Chaudhari and Sharma 2015, and one of three lines."""
+"""Example worksheets: the bearing of Bhadke, Chaudhari and Sharma 2015, and a minimal one of three lines."""

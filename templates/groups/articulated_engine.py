@@ -77,7 +77,7 @@ class ArticulatedEngine(EngineMotion):
 
     @shared
     def own_wall(self) -> Array:
-        """Return the force of each piston on its wall by its own rod [N]."""
+        """Return the force that each piston exerts on its wall due to its own rod [N]."""
         return wall_force(self.axial, self.rods.excess, self.omega[..., None], self.motion)
 
     @shared
@@ -102,7 +102,7 @@ class ArticulatedEngine(EngineMotion):
 
     @shared
     def moving(self) -> Parts:
-        """Return all moving parts, by their forces on the frame."""
+        """Return all moving parts, with their forces on the frame."""
         omega, bank = self.omega[..., None], self.layout.bank
         return Parts(
             piston_shaking(self.m_rec, omega, self.motion, bank)

@@ -93,7 +93,7 @@ class Cylinder(CylinderGas, CrankMechanism):
 
     @formula("mm", "rod centre from wristpin", symbol="a_{g}")
     def a_g(self) -> Array:
-        """Distance of the rod's centre of mass from the wristpin: the rest of the rod's length."""
+        """Distance of the rod's centre of mass from the wristpin: the remainder of the rod's length."""
         return self.l - self.b_g
 
     @formula("kg", "rod mass at crankpin", symbol="m_{3A}", source=DYREMI)
@@ -108,7 +108,7 @@ class Cylinder(CylinderGas, CrankMechanism):
 
     @formula("kg", "rotating mass", symbol="M", source=DYREMI)
     def M(self) -> Array:
-        """All rotating parts as a mass at the crank radius."""
+        """Mass of all rotating parts, referred to the crank radius."""
         return self.m_3A + self.m_w * self.g_w / self.r + self.m_cp - self.m_cb * self.g_cb / self.r
 
     @formula("kg", "reciprocating mass", symbol=r"m_\mathrm{rec}", source=DYREMI)
@@ -130,7 +130,7 @@ class Cylinder(CylinderGas, CrankMechanism):
              remedy="level `rigid` needs `rod_inertia` or `rod_pendulum_period`;"
              " choose `lumped`")  # fmt: skip
     def dI_c(self) -> Array:
-        """0 if the rod is treated as two masses."""
+        """The part of this difference that the level uses: 0 if the rod is treated as two masses."""
         return excess_at(self.level, self.dI)
 
     @shared
@@ -143,5 +143,5 @@ class Cylinder(CylinderGas, CrankMechanism):
     @formula("bar", "indicated mean effective pressure", symbol="p_{mi}",
              latex=r"\frac{1}{A\,s}\oint p\,dV")  # fmt: skip
     def p_mi(self) -> Array:
-        """Exact for any crank angle step."""
+        """Indicated mean effective pressure, exact for any crank angle step."""
         return mean_effective(self.gas)

@@ -177,12 +177,12 @@ class CylinderGas(Template):
 
     @shared(unit="bar")
     def p_absolute(self) -> Array:
-        """Return the pressure from which a table counts as absolute."""
+        """Return the pressure above which a table counts as absolute."""
         return np.asarray(absolute_table())
 
     @shared(unit="bar")
     def p_ambient(self) -> Array:
-        """Return the pressure from which a crankcase pressure counts as absolute."""
+        """Return the pressure above which a crankcase pressure counts as absolute."""
         return np.asarray(absolute_crankcase())
 
     @shared

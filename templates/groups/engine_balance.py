@@ -179,11 +179,12 @@ class EngineBalance(EngineCylinders):
         """Cylinders on the same throw share its pin angle."""
         return pins_are_shared(self.layout, self.shares)
 
-    @require("web_positions", "web_unbalance", "counterweights", "web_throws", missing=True,
-             remedy="give `web_positions` as one list, and throws that exist")  # fmt: skip
+    @require("web_positions", "web_unbalance", "web_angles", "counterweights", "counterweight_angles",
+             "web_throws", missing=True, remedy="give `web_positions` as one list, and throws that exist",
+             )  # fmt: skip
     def webs_are_whole(self) -> Truth:
-        """Webs with an unbalance or a counterweight have positions."""
-        return webs_are_whole(self.z_w, self.U_w, self.U_k, self.t_w, self.layout.throws)
+        """Webs with an unbalance, a counterweight or a list of values have positions."""
+        return webs_are_whole(self.z_w, self.U_w, self.a_w, self.U_k, self.a_k, self.t_w, self.layout.throws)
 
     @require("crank_unbalance", "web_unbalance", "counterweights", warning="massless_crank",
              remedy="give `crank_unbalance`, or `web_unbalance`, counterweights and `web_positions`; main "
@@ -194,7 +195,7 @@ class EngineBalance(EngineCylinders):
 
     @shared
     def layout(self) -> Layout:
-        """Return the pins and firing."""
+        """Return the layout of pins and firing."""
         return arranged(
             self.strokes, self.order, self.psi_g, self.phi_g, self.beta, self.throws, self.crank.top,
             self.gas_cycle,
@@ -305,7 +306,7 @@ class EngineBalance(EngineCylinders):
 
     @formula("deg", "rotating couple angle", symbol=r"\gamma_{C}")
     def gamma_C(self) -> Array:
-        """Direction, at crank angle 0, of the sum of position times force."""
+        """Direction of the sum of position times force at crank angle 0."""
         return direction(self.rotating_couples)
 
     @profile("N", "order force forward", along=ORDERS, symbol=r"F_\mathrm{fwd}",

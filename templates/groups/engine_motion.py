@@ -74,7 +74,7 @@ class EngineMotion(EngineBalance):
 
     @shared
     def grid(self) -> CrankGrid:
-        """Return the crank angles of the calculation; some of them are returned."""
+        """Return the crank angles of the calculation, some of which are returned."""
         return crank_grid(self.strokes, self.step, corners(self.gas, self.layout))
 
     @shared
@@ -125,7 +125,7 @@ class EngineMotion(EngineBalance):
 
     @shared
     def moving(self) -> Parts:
-        """Return all moving parts, by their forces on the frame."""
+        """Return all moving parts, with their forces on the frame."""
         return Parts(
             piston_shaking(self.m_rec, self.omega[..., None], self.motion, self.layout.bank),
             self.places,
@@ -167,7 +167,7 @@ class EngineMotion(EngineBalance):
     @profile("bar", "indicated mean effective pressure", along=EACH, symbol="p_{mi}",
              latex=r"\frac{1}{A\,s}\oint p\,dV")  # fmt: skip
     def p_mi(self) -> Array:
-        """Value for each cylinder, independent of the step."""
+        """Indicated mean effective pressure of each cylinder, independent of the step."""
         return indicated(self.gas, self.f_p, self.layout)
 
     @formula("N*m", "indicated mean torque", name="mean_torque", symbol=r"\overline{T}",

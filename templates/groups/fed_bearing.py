@@ -215,7 +215,7 @@ class FedBearing(Template):
 
     @shared
     def motion(self) -> Duty:
-        """Return the loads and speeds of the bearing, with an unscaled load."""
+        """Return the loads and speeds of the bearing; the load is not scaled."""
         sign = 1.0 if self.sense == "journal_on_sleeve" else -1.0
         return Duty(
             self.theta, sign * self.F_x, sign * self.F_y, self.omega_J, self.omega_B, self.omega_F,

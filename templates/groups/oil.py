@@ -138,7 +138,7 @@ class Oil(Template):
         remedy="the linear law ends 1428 K above its reference",
     )  # fmt: skip
     def rho(self) -> Array:
-        """Density at the film temperature, or at the reference temperature if there is none."""
+        """Density at the film temperature, or at the reference temperature if that is unknown."""
         return density(self.rho_ref, or_reference(self.T_film, self.T_ref), self.T_ref)
 
     @derived(
@@ -155,7 +155,7 @@ class Oil(Template):
 
     @formula("mm**2/s", "kinematic viscosity", gt=0)
     def nu(self) -> Array:
-        """Dynamic viscosity over density."""
+        """Kinematic viscosity: dynamic viscosity over density."""
         return self.eta / self.rho
 
 

@@ -39,7 +39,7 @@ class Table:
     rows: tuple[Row, ...]
 
     def row(self, id: str) -> Row | None:
-        """Return the row of a name; None if there is none."""
+        """Return the row with this id; None if there is none."""
         return next((row for row in self.rows if row.id == id), None)
 
 
@@ -177,6 +177,6 @@ def _oil(grade: str) -> Row:
 
 
 def _words_of_oil(grade: str) -> str:
-    """Return the label of an oil: `sae_15w_40` is SAE 15W-40, `iso_vg_46` is ISO VG 46."""
+    """Return the label of an oil, such as SAE 15W-40 for `sae_15w_40` and ISO VG 46 for `iso_vg_46`."""
     kind, *rest = grade.upper().split("_")
     return f"{kind} {'-'.join(rest) if kind == 'SAE' else ' '.join(rest)}"

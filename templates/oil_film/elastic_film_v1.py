@@ -128,6 +128,10 @@ class ElasticFilm(Oil, Journal):
         "liner_thickness": "0.3 mm",
         "housing_outer_diameter": "76 mm",
     }
+    main_results = (
+        "radial_load", "speed", "maximum_pressure", "minimum_film_thickness", "power_loss",
+        "total_oil_flow",
+    )  # fmt: skip
     criteria = {
         "elasticity": {
             "require": "neglected_deformation <= 0.1 * minimum_film_thickness",
@@ -228,7 +232,7 @@ class ElasticFilm(Oil, Journal):
         per_level={"elastic": limits(38)},
     )  # fmt: skip
     def n_m(self) -> Array:
-        """Rows of the bore's compliance matrix; 0 without one."""
+        """Number of rows of the bore's compliance matrix; 0 without a matrix."""
         return count_modes(self.C_b)
 
     @formula("um/GPa", "liner compliance", symbol="C_{l}", source="Johnson 1985")

@@ -1,7 +1,8 @@
 """Hydrostatic pad: a circular or annular step pad with a recess, fed by a pump (MEC 315).
 
 The pump lifts the load at any speed, even at rest: the film follows from the load, the lands and the
-restrictor. Closed forms; laminar, isothermal, incompressible, parallel rigid faces, a deep recess.
+restrictor. The closed forms assume laminar, isothermal, incompressible flow between parallel rigid faces, and
+a deep recess.
 """
 
 from __future__ import annotations
@@ -73,6 +74,7 @@ class HydrostaticPad(Template):
         "density": "875 kg/m**3",
         "speed": "1000 rpm",
     }
+    main_results = ("load", "recess_pressure", "film_thickness", "total_power", "flow", "temperature_rise")
     criteria = {
         "film": {
             "require": "film_thickness >= smallest_permissible_film",

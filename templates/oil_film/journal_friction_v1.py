@@ -55,6 +55,7 @@ class JournalFriction(Template):
         "dynamic_viscosity": "11.877 mPa*s",
         "radial_load": "10 N",
     }
+    main_results = ("radial_load", "speed", "friction_torque", "power_loss", "relative_eccentricity")
     criteria = {
         "film": {
             "require": "radial_clearance * (1 - relative_eccentricity) >= smallest_permissible_film",

@@ -116,6 +116,10 @@ class MixedFriction(Oil):
         "composite_modulus": "80 GPa",
         "contact_friction": 0.12,
     }
+    main_results = (
+        "radial_load", "speed", "minimum_film_thickness", "film_parameter", "friction_torque", "power_loss",
+        "wear_intensity",
+    )  # fmt: skip
     criteria = {
         "full_film": {
             "require": "film_parameter >= 3",

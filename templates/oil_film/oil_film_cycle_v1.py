@@ -159,6 +159,10 @@ class OilFilmCycle(FedBearing):
         **EXAMPLE,
         "dynamic_viscosity": "10 mPa*s",
     }  # fmt: skip
+    main_results = (
+        "largest_load", "speed", "maximum_pressure", "minimum_film_thickness", "power_loss",
+        "total_oil_flow",
+    )  # fmt: skip
     criteria = {
         "film": {
             "require": "minimum_film_thickness >= permissible_film",
@@ -253,7 +257,7 @@ class OilFilmCycle(FedBearing):
         return self.orbit.march_error(output)
 
     def measured_case(self) -> str:
-        """Return the kind of supply and the motion of the sleeve; empty outside the marched duties."""
+        """Return the kind of supply and the motion of the sleeve; empty outside the range of the duties."""
         kind, motion = supply_kind(self.feeding), sleeve_motion(self.motion)
         marched = np.all((self.P_s >= 0.02) & (self.P_s <= 1)) and motion
         placed = kind.endswith("groove") or np.all(self.under_load <= 0.1)
@@ -315,7 +319,7 @@ class OilFilmCycle(FedBearing):
 
     @shared
     def fed(self) -> FedDuty:
-        """Return the duty with its oil supply, and the load supported by the pressure in a groove."""
+        """Return the duty with its oil supply, and the load that the pressure in a groove supports."""
         return fed_duty(self.level, self.duty, self.feeding, self.P_s)
 
     @shared
@@ -325,7 +329,7 @@ class OilFilmCycle(FedBearing):
 
     @shared
     def film_orbit(self) -> FedOrbit:
-        """Return the orbit if the film repeats; otherwise a single point is refused."""
+        """Return the orbit if the film repeats; if it does not, a single point is refused."""
         return self.any_orbit.required()
 
     @formula(
@@ -440,7 +444,7 @@ class OilFilmCycle(FedBearing):
 
     @formula("1", "cycles run", symbol="n_{c}", absent=MARCHED_ONLY)
     def cycles(self) -> Array:
-        """Number of cycles on all meshes."""
+        """Number of cycles calculated on all meshes."""
         return self.any_orbit.cycles
 
     @formula("1", "mass balance", symbol=r"\delta_{m}", absent=SUPPLIED_ONLY)

@@ -1,7 +1,8 @@
 """Minimum oil film thickness of an engine bearing, after Bhadke, Chaudhari and Sharma (2015).
 
-The worksheet of the paper exactly as it was published, errors included, because users compare it with
-their old worksheets. Static load, aligned journal, mean of inlet and outlet temperature.
+This is the worksheet of the paper exactly as it was published, errors included, because users compare it with
+their old worksheets. It assumes a static load, an aligned journal, and the mean of inlet and outlet
+temperature.
 """
 
 from __future__ import annotations
@@ -57,6 +58,7 @@ class OilFilm(Template):
         "oil_inlet_temperature": "80 degC",
         "oil_outlet_temperature": "87.762 degC",
     }
+    main_results = ("radial_load", "speed", "relative_eccentricity", "minimum_film_thickness")
     criteria = {
         "film": {
             "require": "minimum_film_thickness >= smallest_permissible_film",

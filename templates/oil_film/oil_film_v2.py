@@ -172,6 +172,10 @@ class OilFilm(WarmOil, Journal):
         "journal_roughness": "0.2 um",
         "bearing_roughness": "0.4 um",
     }
+    main_results = (
+        "radial_load", "speed", "maximum_pressure", "minimum_film_thickness", "power_loss",
+        "total_oil_flow", "film_temperature",
+    )  # fmt: skip
     criteria = CRITERIA
 
     grooves: tuple[tuple[float, float], ...] = table(
@@ -267,7 +271,7 @@ class OilFilm(WarmOil, Journal):
 
     @shared
     def shape(self) -> Shape:
-        """Return the bore and tilt over the radial clearance."""
+        """Return the bore and the tilt, relative to the radial clearance."""
         return Shape(
             bore=self.bore, lobes=int(self.lobes), preload=self.preload, angle=self.phi_l, offset=self.alpha,
             mouth=np.where(self.l_m > 0, 2 * self.s_m / self.c, 0.0), mouth_length=2 * self.l_m / self.W,

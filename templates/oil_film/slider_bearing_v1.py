@@ -1,7 +1,8 @@
 """Plane slider bearing: a pad with a fixed incline, without side leakage or of finite width (MEC 315).
 
 The pad is stationary; the runner beneath it slides from inlet to outlet and drags the oil into the converging
-film. Isothermal, incompressible, laminar, rigid faces, oil at ambient pressure around the pad.
+film. The flow is isothermal, incompressible and laminar, the faces are rigid, and the oil around the pad is
+at ambient pressure.
 """
 
 from __future__ import annotations
@@ -93,6 +94,7 @@ class SliderBearing(Template):
         "density": "860 kg/m**3",
         "place": "40 mm",
     }
+    main_results = ("load", "sliding_speed", "maximum_pressure", "outlet_film", "power_loss", "inlet_flow")
     criteria = {
         "film": {
             "require": "min(inlet_film, outlet_film) >= smallest_permissible_film",

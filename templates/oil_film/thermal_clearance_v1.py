@@ -35,6 +35,7 @@ class ThermalClearance(Template):
         "housing_temperature": "100 degC",
         "journal_temperature": "110 degC",
     }
+    main_results = ("growth_of_the_bore", "growth_of_the_journal", "diametral_clearance")
     criteria = {
         "runs": {
             "require": "diametral_clearance >= 0 um",

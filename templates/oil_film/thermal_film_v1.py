@@ -97,6 +97,10 @@ class ThermalFilm(Oil, Template):
         "heat_transfer_coefficient": "80 W/(m**2*K)",
         "ambient_temperature": "40 degC",
     }
+    main_results = (
+        "radial_load", "speed", "maximum_pressure", "minimum_film_thickness", "power_loss",
+        "total_oil_flow", "greatest_film_temperature",
+    )  # fmt: skip
     criteria = {
         "film_exists": film_exists(),
         "own_film": {
@@ -195,7 +199,7 @@ class ThermalFilm(Oil, Template):
 
     @formula("l/min", "flow scale", symbol="q_{0}")
     def q_0(self) -> Array:
-        """Flow that the journal would transport if the whole clearance moved with it."""
+        """Flow that would result if all oil in the clearance moved with the journal."""
         return self.omega * self.psi * self.D**2 * self.W / 4
 
     @formula("W/K", "heat scale", symbol="C_{0}")
@@ -205,7 +209,7 @@ class ThermalFilm(Oil, Template):
 
     @shared
     def eta_given(self) -> Array:
-        """Return the viscosity, if it is given and so does not depend on the temperature."""
+        """Return the viscosity, if it is given and therefore does not depend on the temperature."""
         return self.as_given("eta")
 
     @shared
@@ -239,7 +243,7 @@ class ThermalFilm(Oil, Template):
 
     @formula("1", "mesh error", symbol="e_{h}", absent=ONE_HAS_NONE)
     def mesh_error(self) -> Array:
-        """Change of the smallest film relative to half the mesh."""
+        """Change of the smallest film from a mesh half as fine."""
         return self.film.mesh_error
 
     @formula("deg", "attitude angle", symbol=r"\beta")
@@ -258,7 +262,7 @@ class ThermalFilm(Oil, Template):
 
     @formula("delta_degC", "mesh change", symbol="e_{T}", absent=ONE_HAS_NONE)
     def mesh_change(self) -> Array:
-        """Change of the largest temperature relative to half the mesh."""
+        """Change of the largest temperature from a mesh half as fine."""
         return in_kelvin(self.film.mesh_change)
 
     @profile("deg", "bush angle", along=AROUND, symbol=r"\theta", latex=r"k\,5°")
@@ -279,7 +283,7 @@ class ThermalFilm(Oil, Template):
 
     @formula("degC", "journal temperature", symbol="T_{J}", absent=ONE_HAS_NONE)
     def T_J(self) -> Array:
-        """Temperature of the journal without net heat flow, or as given."""
+        """Temperature at which no net heat flows into the journal, or the given temperature."""
         return in_kelvin(self.film.T_journal)
 
     @formula("degC", "groove temperature", symbol="T_{g}", absent=ONE_HAS_NONE)
@@ -321,7 +325,7 @@ class ThermalFilm(Oil, Template):
 
     @formula("W", "heat by oil", symbol=r"\Phi_{o}")
     def Phi_o(self) -> Array:
-        """Heat that the outflowing oil removes, above the supply temperature."""
+        """Heat that the outflowing oil removes, relative to the supply temperature."""
         return in_kelvin(self.film.by_oil) * self.C_0
 
     @formula("W", "heat by bush", symbol=r"\Phi_{b}")

@@ -69,6 +69,10 @@ class ThrustBearing(Oil):
         "oil_grade": "iso_vg_46",
         "supply_temperature": "40 degC",
     }
+    main_results = (
+        "load", "speed", "specific_load", "minimum_film_thickness", "power_loss", "fresh_oil_flow",
+        "outlet_temperature",
+    )  # fmt: skip
     criteria = {
         "film": {
             "require": "minimum_film_thickness >= smallest_permissible_film",

@@ -75,6 +75,7 @@ class CrankStiffness(Template):
         "shear_modulus": "80 GPa",
         "reference_stiffness": "2.6e6 N*m/rad",
     }
+    main_results = ("stiffness_carter", "stiffness_wilson", "recommended_stiffness")
     criteria = {
         "stiffness": {
             "require": "recommended_stiffness >= required_stiffness",

@@ -1,7 +1,7 @@
 """Life under the engine cycle: superposed tensors of unit loads, counted cycles, accumulated damage.
 
-For the fillets of a crank, and for any part whose stresses under unit loads are known from finite elements or
-measurements. All stresses are elastic.
+Use it for the fillets of a crank, and for any part whose stresses under unit loads are known from finite
+elements or measurements. All stresses are elastic.
 """
 
 from __future__ import annotations
@@ -141,6 +141,7 @@ class FatigueLife(SteelEndurance):
         "notch_radius": "3 mm",
         "cycle_time": "0.04 s",
     }
+    main_results = ("greatest_von_mises", "life_in_hours", "safety_factor")
     criteria = {
         "strength": {
             "require": "greatest_von_mises <= yield_strength",

@@ -1,6 +1,7 @@
 """Forced torsional vibration of an engine's train: torque, twist and stress of each shaft over the speeds.
 
-Inertias, shafts, branches, gears, dampers and a propeller, excited by gas and inertia torque of cylinders.
+The train consists of inertias, shafts, branches, gears, dampers and a propeller. The gas and inertia torques
+of the cylinders excite it.
 """
 
 from __future__ import annotations
@@ -136,6 +137,7 @@ class ForcedTorsion(TorsionTrain):
         "speeds": {"value": [800, 1300, 1800, 2300], "unit": "rpm"},
         "observed_inertia": 5,
     }  # fmt: skip
+    main_results = ("natural_frequencies[1]", "largest_torque[1]", "largest_stress[1]", "worst_speed[1]")
     criteria = {
         "stress": {
             "require": "stress_envelope <= permissible_vibratory_stress",
@@ -216,12 +218,12 @@ class ForcedTorsion(TorsionTrain):
 
     @require("gas_torque", "crank_angle", missing=True, remedy="omit the last point")
     def gas_closes(self) -> Truth:
-        """A last point of the gas torque that repeats the first angle repeats its torque."""
+        """If the last crank angle closes the cycle, the gas torque there equals the first one."""
         return closes(self.theta, self.T_g)
 
     @require("inertia_torque", "crank_angle", missing=True, remedy="omit the last point")
     def inertia_closes(self) -> Truth:
-        """A last point of the inertia torque that repeats the first angle repeats its torque."""
+        """If the last crank angle closes the cycle, the inertia torque there equals the first one."""
         return closes(self.theta, self.T_m)
 
     @require("highest_order", "crank_angle", remedy="take a lower order, or smaller steps of the crank angle")

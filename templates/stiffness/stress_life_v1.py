@@ -1,7 +1,7 @@
 """Fatigue life by stress: Basquin's line with mean stress by Goodman, Gerber or Morrow.
 
-For parts under constant amplitude with elastic stresses. The stress is given as the local stress (from finite
-elements or measurements), or as a nominal stress with its stress concentration.
+Use it for parts under constant amplitude with elastic stresses. The stress is given as the local stress (from
+finite elements or measurements), or as a nominal stress with its stress concentration.
 """
 
 from __future__ import annotations
@@ -105,6 +105,7 @@ class StressLife(Template):
         "endurance_limit": "130 MPa",
         "design_life": 1e7,
     }
+    main_results = ("stress_amplitude", "cycles", "safety_factor")
     criteria = {
         "strength": {
             "require": "abs(mean_stress) + stress_amplitude <= ultimate_strength",

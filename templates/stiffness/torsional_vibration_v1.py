@@ -61,6 +61,7 @@ class TorsionalVibration(Template):
         "engine_orders": [2, 4, 6],
         "speed_range": {"value": [1000, 4000], "unit": "rpm"},
     }
+    main_results = ("natural_frequencies[1]", "critical_speeds[1]")
     criteria = {
         "separation": {
             "require": "abs(critical_speeds - (1.1 * highest_running_speed + 0.9 * lowest_running_speed) / 2)"

@@ -71,6 +71,7 @@ def test_contradictions_of_an_engine_are_refused_by_name(http, change, names):
     assert names <= {error["name"] for error in answer.json()["errors"]}
 
 
+@pytest.mark.slow
 def test_all_nine_bearings_are_variants_and_the_worst_governs(http):
     design = created(http, {name: value for name, value in ENGINE.items() if name != "models"})
     table = http.get(f"{API}/designs/{design['id']}/variants").json()

@@ -116,7 +116,7 @@ class File:
             yield Dimension(name, kind, self.measure(item), lower, upper, sides, places)
 
     def faces(self, aspect):
-        """The faces of a shape aspect, or of the aspects of which it is composed."""
+        """The faces and edges of a shape aspect, or of the aspects of which it is composed."""
         members = {aspect}
         for number in self.of["SHAPE_ASPECT_RELATIONSHIP"]:
             one, other = self.entities[number]["SHAPE_ASPECT_RELATIONSHIP"][2:]
@@ -129,14 +129,27 @@ class File:
         assert faces, "an aspect of no face"
         return faces
 
+    def geometry(self, item):
+        """The surface of a face, or the curve of an edge, with its keyword."""
+        ((keyword, arguments),) = self.entities[item.number].items()
+        assert keyword in ("ADVANCED_FACE", "EDGE_CURVE")
+        place = 2 if keyword == "ADVANCED_FACE" else 3
+        ((keyword, arguments),) = self.entities[arguments[place].number].items()
+        if keyword == "SURFACE_CURVE":  # the curve in space, then those on both faces
+            ((keyword, arguments),) = self.entities[arguments[1].number].items()
+        return keyword, arguments
+
     def surface(self, face):
-        ((keyword, arguments),) = self.entities[self.get(face, "ADVANCED_FACE")[2].number].items()
+        keyword, arguments = self.geometry(face)
         return keyword, arguments[2] if keyword in ("CYLINDRICAL_SURFACE", "SPHERICAL_SURFACE") else 0.0
 
     def place(self, face):
-        """The keyword of the surface of a face, a point of it or its axis, its normal or axis, its radius."""
+        """The keyword of a surface or curve, a point of it or its axis, its normal or axis, its radius."""
         keyword, radius = self.surface(face)
-        ((_, arguments),) = self.entities[self.get(face, "ADVANCED_FACE")[2].number].items()
+        _, arguments = self.geometry(face)
+        if keyword == "LINE":
+            direction = self.get(self.get(arguments[2], "VECTOR")[1], "DIRECTION")
+            return keyword, tuple(self.get(arguments[1], "CARTESIAN_POINT")[1]), tuple(direction[1]), radius
         point, axis, _ = self.get(arguments[1], "AXIS2_PLACEMENT_3D")[1:]
         return (
             keyword,
@@ -144,6 +157,29 @@ class File:
             tuple(self.get(axis, "DIRECTION")[1]),
             radius,
         )
+
+    def lines(self):
+        """The lines drawn for every dimension, by its name, as pairs of points in the axes of the file."""
+        names = {}
+        for number in self.of["DIMENSIONAL_CHARACTERISTIC_REPRESENTATION"]:
+            dimension, representation = self.entities[number]["DIMENSIONAL_CHARACTERISTIC_REPRESENTATION"]
+            names[dimension] = self.get(representation, "SHAPE_DIMENSION_REPRESENTATION")[0]
+        first = self.of["SHAPE_DEFINITION_REPRESENTATION"][0]
+        _, root = self.entities[first]["SHAPE_DEFINITION_REPRESENTATION"]
+        for number in self.of["DRAUGHTING_MODEL_ITEM_ASSOCIATION"]:
+            _, _, dimension, model, callout = self.entities[number]["DRAUGHTING_MODEL_ITEM_ASSOCIATION"]
+            ((_, (_, _, axes)),) = self.entities[root.number].items()
+            assert self.get(model, "DRAUGHTING_MODEL")[2] == axes
+            if dimension in names:
+                yield names[dimension], list(self._segments(callout))
+
+    def _segments(self, callout):
+        for occurrence in self.get(callout, "DRAUGHTING_CALLOUT")[1]:
+            drawn = self.get(occurrence, "TESSELLATED_ANNOTATION_OCCURRENCE")[2]
+            for curves in self.get(drawn, "TESSELLATED_GEOMETRIC_SET")[1]:
+                _, points, pairs = self.get(curves, "TESSELLATED_CURVE_SET")
+                at = self.get(points, "COORDINATES_LIST")[2]
+                yield from ([at[int(n) - 1] for n in pair] for pair in pairs)
 
     def tolerances(self):
         """Name, kind, width and datums of every geometric tolerance."""

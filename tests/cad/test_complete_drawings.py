@@ -42,8 +42,12 @@ SHAPES: list[tuple[str, dict[str, object]]] = [
     ("thrust_washer", {"oil_grooves": 8, "pin_hole_diameter": "0 mm", "lug_width": "0 mm"}),
     ("crank_throw", {"web_shape": "rectangular", "counterweight_radius": "0 mm"}),
     ("plain_bearing", {"shells": "pair", "crush_height": "0 mm"}),
+    ("plain_bearing", {"wall_reduction": "0.05 mm", "relief_depth": "0 mm"}),
     ("flanged_bush", {"oil_hole_diameter": "0 mm"}),
     ("connecting_rod", {"pocket_width": "0 mm"}),
+    ("connecting_rod", {"shank_taper": "0 deg", "bush_wall": "0 mm"}),
+    ("connecting_rod", {"boss_height": "38 mm", "cap_boss_height": "36 mm", "pocket_corner_radius": "0 mm"}),
+    ("connecting_rod", {"big_end_fillet": "0 mm", "small_end_fillet": "0 mm", "boss_corner_radius": "0 mm"}),
     ("bearing_housing", {"oil_drilling_diameter": "0 mm"}),
 ]
 

@@ -140,13 +140,13 @@ def test_two_copies_in_one_place_overlap_wholly():
 
 def test_solids_that_cannot_be_compared_are_told(monkeypatch):
     def cannot(bodies):
-        raise GeometryError("kernel", "whether one and other overlap cannot be determined")
+        raise GeometryError("kernel", "the kernel cannot determine whether one and other overlap")
 
     monkeypatch.setattr(examination, "overlaps", cannot)
     found = examined(step_of(box("one"), box("other", places=at((4, 0, 0)))))
     assert found.overlapping is None
     assert found.findings[1] == (
-        "Overlaps were not examined: whether one and other overlap cannot be determined."
+        "Overlaps were not examined: the kernel cannot determine whether one and other overlap."
     )
 
 

@@ -32,6 +32,9 @@ class UsedInput(Answer):
     lower: JsonValue = Field(None, description="lower deviation of a one-sided tolerance")
     zone: str | None = Field(None, description="ISO 286 tolerance zone that defines the limits")
     distribution: str | None = Field(None, description="distribution between the limits, if given")
+    state_in_table: bool | None = Field(
+        None, description="whether the table of a drawing states the tolerance if no face can carry it"
+    )
 
 
 class Output(Measured):

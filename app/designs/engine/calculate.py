@@ -56,7 +56,7 @@ def calculate(
 
 
 def resume(before: Calculation, measured: Measured, analysed: Analysed) -> Calculation:
-    """Return a calculation without faults, continued: only its pending values are calculated."""
+    """Continue a calculation without faults: calculate only its pending values, and return it."""
     result = _copy(before)
     result.pending, result.deferred, result.faults = set(), set(), []
     result.shapes, result.measures = dict(before.shapes), dict(before.measures)
@@ -74,7 +74,7 @@ def constants(calculation: Calculation) -> Calculation:
 
 
 def rows(shared: Calculation, count: int, given: Mapping[Reference, Array]) -> Calculation:
-    """Return the calculation of some rows, starting from the values that all rows share."""
+    """Return the calculation of some rows, based on the values that all rows share."""
     result = _copy(shared)
     result.count, result.given = count, given
     result.faults, result.broken = list(shared.faults), set(shared.broken)
@@ -90,9 +90,9 @@ def recalculated(
     again: Collection[str] = (),
     outputs: Mapping[str, tuple[str, ...]] | None = None,
 ) -> Calculation:
-    """Return the calculation repeated with given step outputs [SI]; solids do not change.
+    """Repeat a calculation with given step outputs [SI]; solids and rounded sizes do not change.
 
-    Each step is calculated at its level in `levels`, so that no other level changes the result. Steps in
+    Each step is calculated at its level in `levels`, so that no change of level affects the result. Steps in
     `again` are always recalculated, and compute the named `outputs`. Pending values stay pending.
     """
     result = _copy(before)
@@ -115,7 +115,7 @@ def recalculated(
 
 
 def _again(result: Calculation, block: Block, outputs: tuple[str, ...] | None) -> None:
-    """Recalculate a step, possibly for other outputs than those that the design requests."""
+    """Recalculate a step, perhaps for other outputs than those that the design requests."""
     asked = block if outputs is None else replace(block, outputs=outputs)
     _block(result, asked)
     if asked in result.pending:
@@ -127,11 +127,16 @@ def _again(result: Calculation, block: Block, outputs: tuple[str, ...] | None) -
 def following(
     calculation: Calculation, changed: Collection[Reference], again: Collection[str] = ()
 ) -> list[Cell | Block]:
-    """Return, in order, the cells and steps that depend on the changed outputs or on the steps in `again`."""
+    """Return, in order, the cells and steps that depend on the changed outputs or on the steps in `again`.
+
+    A rounded size is chosen once, so neither it nor what depends on it alone is among them.
+    """
     moved = dict[Node, None]()
     nodes = list[Cell | Block]()
     for node in calculation.graph.order:
         if isinstance(node, Cell):
+            if node.roundings:
+                continue
             sources = calculation.graph.sources[node]
             is_moved = not (moved.keys().isdisjoint(sources) and _is_disjoint(node, changed))
         elif isinstance(node, Block) and not node.is_model:
@@ -149,7 +154,7 @@ def _is_disjoint(cell: Cell, changed: Collection[Reference]) -> bool:
 
 
 def _copy(before: Calculation) -> Calculation:
-    """Return a copy of the calculation to continue; it shares the data of solids with the original."""
+    """Return a copy of the calculation to be continued; it shares the data of solids with the original."""
     return replace(
         before,
         values=dict(before.values),
@@ -248,7 +253,7 @@ def literal(cell: Cell) -> TypedQuantity:
 
 
 def _related(result: Calculation, cell: Cell) -> None:
-    """Calculate the value of a cell from its relations; inside a block it gets the declared unit."""
+    """Calculate the value of a cell from its relations; in a block the value gets the declared unit."""
     uses = {name: result.used(reference) for name, reference in cell.uses.items()}
     _limit(result, cell, uses)
     column = _admitted(result, cell, _joined(cell, uses), uses, NOT_FINITE)
@@ -258,9 +263,10 @@ def _related(result: Calculation, cell: Cell) -> None:
 
 
 def _limit(result: Calculation, cell: Cell, uses: Mapping[str, Column]) -> None:
-    """Add the operations of a cell's relations on arrays to the total, and refuse too many.
+    """Count the operations of a cell's relations on arrays, and refuse the design if the total is too large.
 
-    Relations between single values are not counted, because the limited text keeps them few.
+    Relations between single values are not counted, because the length limit of a relation keeps their number
+    small.
     """
     if any(column.rank for column in uses.values()):
         limit_values(count := spanned(column.places for column in uses.values()))
@@ -278,6 +284,12 @@ def _typed(result: Calculation, cell: Cell, column: Column) -> TypedQuantity:
     is_of_model = block is not None and block.is_model
     tolerance = tolerance_of(result.graph, cell, result.typed) if is_of_model else None
     return TypedQuantity(np.asarray(scale.from_si(si)).tolist(), scale.text, si, {}, tolerance)
+
+
+def calculated(result: Calculation, cell: Cell) -> Column:
+    """Return the value of a cell before its rounding; its sources have values."""
+    uses = {name: result.used(reference) for name, reference in cell.uses.items()}
+    return _joined(cell.calculated, uses)
 
 
 def _joined(cell: Cell, uses: Mapping[str, Column]) -> Column:
@@ -336,7 +348,7 @@ def _refuse(result: Calculation, refusals: Mapping[int, Refusal]) -> None:
 
 
 def _block(result: Calculation, block: Block) -> None:
-    """Evaluate a step, or check the parameters of a model; while a cell is pending, check what is known."""
+    """Evaluate a step, or check a model's parameters; while a cell is pending, check the known values."""
     cells = block.cells
     waiting = {n for n, cell in cells.items() if cell in result.pending} if result.pending else set()
     broken, typed, values = result.broken, result.typed, result.values
@@ -361,7 +373,7 @@ def _block(result: Calculation, block: Block) -> None:
 
 
 def _given(result: Calculation, cell: Cell) -> Column | Raw:
-    """Return the value of a cell as an input of a step: a column if it differs from row to row."""
+    """Return the value of a cell as an input of a step, as a column if it differs between rows."""
     column = result.values.get(cell.name)
     if column is not None and column.is_row:
         return column
@@ -369,7 +381,7 @@ def _given(result: Calculation, cell: Cell) -> Column | Raw:
 
 
 def _rows_of(result: Calculation, block: Block) -> None:
-    """Evaluate a step, or a model's own formulas, for all rows that have their inputs."""
+    """Evaluate a step, or the formulas of a model, for all rows whose inputs exist."""
     for states in (result.pending, result.broken):
         if not states.isdisjoint(block.cells.values()):
             states.add(block)
@@ -443,7 +455,7 @@ def _evaluation(
 
 
 def _prepared(result: Calculation, block: Block) -> Evaluation | None:
-    """Return the evaluation of a step that another calculation has prepared, or None."""
+    """Return the evaluation of a step that another calculation has prepared; None if there is none."""
     prepared = result.prepared.pop(block.name, None)
     if prepared == DEFERRED:
         raise StepDeferred

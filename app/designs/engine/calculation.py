@@ -110,7 +110,7 @@ class Calculation:
 
     @property
     def for_all(self) -> Refusal | None:
-        """Return the refusal of all rows; None if no fault concerns all of them."""
+        """Return the refusal that concerns all rows; None if no fault does."""
         return refusal_of(self.faults) if self.faults else None
 
     def value(self, reference: Reference) -> Value:
@@ -221,7 +221,7 @@ class Calculation:
     def instance(self, block: str) -> Template:
         """Return the template of a step, or the model, with its values.
 
-        If the rows were evaluated in several parts, it is the template of the first part.
+        If the rows were evaluated in several parts, the template of the first part is returned.
 
         Raises
         ------

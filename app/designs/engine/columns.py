@@ -88,7 +88,7 @@ class Column:
 def aligned(columns: Mapping[str, Column]) -> tuple[dict[str, Value], bool]:
     """Return values that broadcast row by row, and whether any of them has a row axis.
 
-    The other axes broadcast from the last one, as they do without rows.
+    All other axes broadcast from the last one, as they do without rows.
     """
     rank = max((column.rank for column in columns.values()), default=0)
     values = {name: column.padded(rank) for name, column in columns.items()}
@@ -96,7 +96,7 @@ def aligned(columns: Mapping[str, Column]) -> tuple[dict[str, Value], bool]:
 
 
 def stacked(items: Sequence[Column]) -> Column:
-    """Return single values, some of which may differ from row to row, as one column of lists."""
+    """Return single values as one column of lists; some of the values may differ between rows."""
     if not any(item.is_row for item in items):
         return Column(np.array([item.value for item in items], dtype=float))
     values = np.broadcast_arrays(*(item.value for item in items))
@@ -110,7 +110,7 @@ UNEQUAL = (
 
 
 def scattered(count: int, parts: Iterable[tuple[Indices | slice, Column]]) -> Column:
-    """Return one column for `count` rows, assembled from parts; rows outside all parts are NaN.
+    """Return one column for `count` rows, assembled from parts; rows that belong to no part are NaN.
 
     Raises
     ------

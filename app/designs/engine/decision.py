@@ -121,7 +121,7 @@ class Climb:
         return replace(result, stopped="no_finer_level") if is_open else result
 
     def estimated(self) -> ClimbResult:
-        """Return the level that would be calculated first, as a trial that is not carried out."""
+        """Return the first level that `decide` would calculate, as a trial that is not carried out."""
         judgements = {judgement.name: judgement for judgement in Verdicts(self.calculation).all()}
         asked = tuple(n for n, j in judgements.items() if self._is_wanted(n) and self._is_asked(j))
         moves = list(self._moves(asked))
@@ -139,7 +139,7 @@ class Climb:
         return ClimbResult(ordered, self.wanted, asked, tuple(trials), skipped, stopped)
 
     def _is_asked(self, judgement: Judgement) -> bool:
-        """Return whether a finer level could settle a criterion: it is undecided, or its error is unknown."""
+        """Return whether a finer level could settle a criterion: undecided, or with unknown error."""
         if judgement.verdict == "undecided":
             return True
         return judgement.is_open and next(self._moves([judgement.name]), None) is not None
@@ -148,7 +148,7 @@ class Climb:
         return self.wanted is None or name in self.wanted
 
     def _next(self, open_now: Sequence[str], left: float) -> Stop | None:
-        """Carry out the best refinement, or return why there is none."""
+        """Carry out the best refinement, or return the reason why there is none."""
         if not open_now:
             return "decided"
         moves = [move for move in self._moves(open_now) if (move.block.name, move.level) not in self._tried]
@@ -183,7 +183,7 @@ class Climb:
             yield _Move(block, finer.level, before, _largest(finer.error), seconds)
 
     def _note_levels(self, block: Block, reference: Reference) -> None:
-        """Record why levels are skipped: their error has another reference, or is not smaller."""
+        """Record the reasons for skipping levels: their error refers to another truth, or is not smaller."""
         evaluation, measured = self.calculation.evaluations[block.name], accuracy(block.cls)
         if measured is None:
             return
@@ -221,7 +221,7 @@ class Climb:
         return level_seconds(template, raw, level, self._needed(block, open_now))
 
     def _climb(self, move: _Move, open_now: Sequence[str]) -> Stop | None:
-        """Calculate a step at a finer level, and keep the result unless the step refuses or is pending."""
+        """Calculate a step at a finer level, and keep the result unless the step is refused or pending."""
         name, level, start = move.block.name, move.level, time.perf_counter()
         self._tried.add((name, level))
         self.skipped.pop((name, level), None)
@@ -256,6 +256,6 @@ def _announcement(trial: Trial) -> str:
 
 
 def _largest(error: object) -> float:
-    """Return the largest error of several points; infinite if the error of any point is unknown."""
+    """Return the largest error of several points; infinite if the error at any point is unknown."""
     errors = np.asarray(error if error is not None else np.nan, dtype=float)
     return float(np.max(np.where(np.isnan(errors), np.inf, errors)))

@@ -137,8 +137,8 @@ class DesignEngine:
         wanted
             Parameters, inputs and outputs of steps, parameters of models, known measurements.
         levels
-            Levels by step; a step not named here uses the level or tolerance of the design, else the starting
-            level of its template.
+            Levels by step; a step not named here uses the level or tolerance of the design, otherwise the
+            starting level of its template.
         judge
             Whether the result includes the numbers behind each verdict; this judges all criteria unless
             `criteria` names some. Errors are propagated through relations at both ends of their bands, as for
@@ -180,9 +180,9 @@ class DesignEngine:
     ) -> dict[str, str | None]:
         """Return one level for each step: the cheapest whose stated error is within the tolerance.
 
-        The error must be within the tolerance in a `share` of the rows that have values. A step with a level
-        in the design keeps it, and a step that states too few errors uses its starting level. A step without
-        levels has None.
+        The error must be within the tolerance in a `share` of the rows that have values. A step for which the
+        design sets a level keeps it. A step that states errors for too few rows uses its starting level. For
+        a step without levels the result is None.
         """
         raise_if(list(self.design.faults(wanted, {})))
         count, given = self.checked(rows)
@@ -201,8 +201,8 @@ class DesignEngine:
         """Estimate the time of a call for this number of rows [s].
 
         The estimate uses the processor time of the last similar call with enough rows. Before such a call it
-        uses the cost tables of the levels, which give an order of magnitude and ignore heat balances.
-        `by_tables` always uses the tables, so that equal requests give equal answers in any process.
+        uses the cost tables of the levels, which give an order of magnitude and ignore heat balances. With
+        `by_tables` it always uses the tables, so that equal requests give equal answers in any process.
         """
         asked, seconds = self._wanted(wanted, criteria), 0.0
         if not by_tables and (pace := self.design.pace(asked, levels)) is not None:
@@ -240,7 +240,7 @@ class DesignEngine:
         return self.graph.unit_of(reference) if is_inside else measured_unit(reference)
 
     def accepted(self, reference: Reference) -> str:
-        """Return the unit that determines which units a user may type for a name."""
+        """Return the unit that determines in which units a user may type a value for a name."""
         is_inside = str(reference) not in self.graph.parameters and is_member(self.graph, reference)
         return self.graph.accepted(reference) if is_inside else self.unit(reference)
 
@@ -258,7 +258,8 @@ class DesignEngine:
         Raises
         ------
         InvalidInputs
-            If columns are missing, too many, of different lengths or of the wrong shape, or levels unknown.
+            If columns are missing, too many, of different lengths or of the wrong shape, or a level is
+            unknown.
         """
         raise_if(list(self.design.faults((), levels or {})))
         return checked_rows(self.graph, self.varied, rows)

@@ -44,7 +44,7 @@ class LevelChoice:
     wanted: Targets
 
     def of_tolerances(self, levels: Levels) -> dict[str, str | None]:
-        """Return the given levels, and levels for steps that have a tolerance but no level in the design."""
+        """Return the given levels, and chosen levels for steps with a tolerance but no own level."""
         chosen = dict(levels)
         for block in self.design.steps(self.wanted):
             if block.tolerance is not None and not (levels.get(block.name) or block.level):
@@ -54,7 +54,7 @@ class LevelChoice:
     def within(self, tolerance: float, share: float, starts: Levels) -> dict[str, str | None]:
         """Return the level of each step, chosen after the levels of the steps on which it depends.
 
-        `starts` holds the starting levels of steps whose rows would start at different levels.
+        `starts` holds the starting levels of steps whose rows would otherwise start at different levels.
         """
         chosen = dict(starts)
         for block in self.design.steps(self.wanted):
@@ -107,7 +107,7 @@ class LevelSearch:
         return next(best_first(self.block.cls, self.ladder, self.start, count))
 
     def _may_serve(self, measured: Accuracy, level: str) -> bool:
-        """Return whether a level is worth calculating: a finer level must state small enough errors."""
+        """Return whether to calculate a level: a finer one only if it states small enough errors."""
         finer = level != self.start and self.ladder.index(level) > self._place
         return not finer or float(np.mean(self._expected(measured, level))) >= self.share
 
@@ -147,9 +147,9 @@ class LevelSearch:
         return self._share(steps, self.tolerance)
 
     def _share(self, steps: Sequence[StepRows], tolerance: float) -> float:
-        """Return the share of rows in which every output has a small error.
+        """Return the share of rows in which every output has a small enough error.
 
-        An output may also have no value, if it has none at the starting level either.
+        An output without a value also counts if it has no value at the starting level either.
         """
         met = np.ones(sum(step.count for step in steps), dtype=bool)
         for name in self.outputs:
@@ -159,7 +159,7 @@ class LevelSearch:
         return float(np.mean(met))
 
     def _calculated(self, level: str | None) -> list[StepRows]:
-        """Return the step calculated in each chunk of rows; without parts where it is pending or refused."""
+        """Return the step calculated in each chunk of rows, without chunks where it is pending or refused."""
         nothing = StepRows(self.block, 1, has_rows=False)
         return [rows.step(self.block.name) or nothing for rows in self.passes(level)]
 

@@ -45,7 +45,7 @@ def needs(
 ) -> Needs:
     """Return all nodes on which some values depend, without the nodes behind known (`measured`) values.
 
-    For the inputs in `inside`, the steps themselves are needed too.
+    For the inputs in `inside`, the steps themselves are also needed.
     """
     result, seen = Needs(), set[Reference]()
     left = [*wanted, *(before for reference in inside for before in _of_member(graph, reference, result))]
@@ -99,7 +99,7 @@ class MovingNodes:
         return node in self.because
 
     def chain(self, node: Node) -> list[Node]:
-        """Return the path from the varied cell to a dependent node."""
+        """Return the path from the varied cell to a node that depends on it."""
         nodes = [node]
         while before := self.because[nodes[-1]]:
             nodes.append(before)
@@ -123,7 +123,7 @@ def _is_varied(cell: Cell, varied: Collection[Reference]) -> bool:
 
 
 def solids_in_the_way(graph: Graph, measures: Iterable[Reference], moving: MovingNodes) -> list[Fault]:
-    """Return a fault for each measurement whose solid differs from row to row, with the chain of names."""
+    """Return a fault for each measurement whose solid differs between rows, with the chain of names."""
     solids = {reference: graph.blocks[reference.block].solid for reference in sorted(measures, key=str)}
     return [_in_the_way(graph, r, moving.chain(solid)) for r, solid in solids.items() if solid in moving]
 

@@ -88,10 +88,10 @@ def place_faults(
 
 
 def _followed(cell: Cell) -> str:
-    """Return a message that a relation sets a value, and which values can vary instead."""
+    """Return a message that a relation sets a value, and the values that can vary instead."""
     text = cell.raw if isinstance(cell.raw, str) else "a list with relations"
     instead = (
-        f"; vary {', '.join(sorted(cell.uses))} instead, or replace the relation by a value"
+        f"; vary {', '.join(sorted(cell.uses))} instead, or replace the relation with a value"
         if cell.uses
         else ""
     )
@@ -112,7 +112,7 @@ class Ranks:
     _ranks: dict[Cell, int] = field(default_factory=dict)
 
     def faults(self, blocks: Collection[str]) -> Iterator[Fault]:
-        """Yield a fault for each single input that gets a list, in steps that differ from row to row."""
+        """Yield a fault for each single-valued input that gets a list, in steps that differ between rows."""
         for node in self.graph.order:
             if isinstance(node, Cell):
                 self._ranks[node] = self._of_cell(node)
@@ -149,7 +149,7 @@ class Ranks:
         return own + (0 if block in self.moving else self._points(block))
 
     def _points(self, block: Block) -> int:
-        """Return the number of axes of the points at which a step is calculated in every row."""
+        """Return the number of axes of the points at which a step is calculated in each row."""
         inputs = ((self._ranks[cell], block.cls.inputs[name]) for name, cell in block.cells.items())
         return max((n - isinstance(d, Curve) for n, d in inputs if not isinstance(d, Table)), default=0)
 

@@ -24,7 +24,7 @@ class Refusal:
 
 
 def refusal_of(faults: Sequence[Fault]) -> Refusal:
-    """Return one refusal for several faults, located at the first one."""
+    """Combine several faults into one refusal, located at the first fault."""
     first, *others = faults
     details = [first.detail, *(f"{fault.name}: {fault.detail}" for fault in others)]
     return Refusal(first.name, first.code, "; ".join(details))
@@ -68,7 +68,7 @@ def is_of_all_rows(cls: type[Template], faults: Sequence[Fault], varied: Collect
 
 
 def _beneath(cls: type[Template], fault: Fault) -> frozenset[str]:
-    """Return the attributes on which a fault depends; empty if they are unknown."""
+    """Return the attributes on which a fault depends; empty if these are unknown."""
     declared = {**cls.formulas, **cls.inputs}
     if not all(name in declared for name in fault.names):
         return frozenset()

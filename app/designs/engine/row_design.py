@@ -65,11 +65,11 @@ class RowDesign:
 
     @cached_property
     def moving(self) -> MovingNodes:
-        """Return the nodes whose values differ from row to row."""
+        """Return the nodes whose values differ between rows."""
         return varying(self.graph, self.varied)
 
     def needs(self, wanted: Targets) -> Needs:
-        """Return the nodes on which some values depend; cached for the next call."""
+        """Return the nodes on which some values depend; they are cached for the next call."""
         if wanted not in self._needs:
             if len(self._needs) >= MOST_PREPARED:
                 self._needs.clear()
@@ -109,7 +109,7 @@ class RowDesign:
         return block.cls.inputs.get(reference.member) or block.cls.formulas.get(reference.member)
 
     def constants(self, wanted: Targets, levels: Levels) -> Calculation:
-        """Calculate the values that all rows share; cached for the next call."""
+        """Calculate the values that all rows share; they are cached for the next call."""
         pinned = self._pinned(wanted, levels)
         key = wanted, pinned
         if key not in self._prepared:
@@ -129,12 +129,12 @@ class RowDesign:
         levels: Levels,
         chunk: int = MOST_ROWS,
     ) -> Iterator[tuple[int, Calculation]]:
-        """Calculate the rows in chunks; yield the number of each chunk's first row and its calculation.
+        """Calculate the rows in chunks; yield the number of each chunk's first row, and its calculation.
 
         Raises
         ------
         LevelMoved
-            If a step has no given level and its rows start at different levels.
+            If no level is given for a step and its rows start at different levels.
         """
         shared = self.constants(wanted, levels)
         size = self.rows_at_once(wanted, levels, chunk)
@@ -172,7 +172,7 @@ class RowDesign:
                     pinned[moved.step] = max(moved.before, moved.level, key=ladder.index)
 
     def nominal(self, wanted: Targets, levels: Levels) -> Calculation:
-        """Return the calculation of the design as written, without varied values."""
+        """Return the calculation of the design as the document states it, without varied values."""
         with np.errstate(all="ignore"):
             return replace(self, varied=frozenset(), _prepared={}).constants(wanted, levels)
 
@@ -182,7 +182,7 @@ class RowDesign:
         return max(1, min([chunk, MOST_VALUES // max(values, 1), *self._most_points(wanted, levels)]))
 
     def sizes(self, wanted: Targets) -> Mapping[str, int]:
-        """Return the number of values of each cell and output in one row, in the design as written."""
+        """Return how many values each cell and output has in one row of the unvaried design."""
         if wanted not in self._sizes:
             cheapest = {block.name: next(iter(block.cls.levels), None) for block in self.steps(wanted)}
             nominal, needed = self.nominal(wanted, cheapest), self.needs(wanted).members.items()

@@ -56,7 +56,7 @@ class Origins:
         return Origins(self.carried | other.carried, self.stopped | other.stopped)
 
     def without(self) -> Origins:
-        """Return the same outputs as stopped, because their errors are not propagated any further."""
+        """Return the same origins with some outputs marked as stopped: their errors are not propagated."""
         return Origins(stopped=self.carried | self.stopped)
 
 
@@ -93,15 +93,15 @@ class Shifts:
     _seconds: float = 0.0  # estimated total time for one row of the recalculations so far
 
     def upstream(self, references: Iterable[Reference]) -> Upstream:
-        """Return the outputs on which some values depend, without the errors of the values' own steps."""
+        """Return the outputs on which some values depend, grouped as `by_error` does."""
         return self.by_error(_joined(map(self._beneath_of, references)))
 
     def behind(self, reference: Reference) -> Upstream:
-        """Return the outputs that make a value uncertain: the value itself, and outputs upstream."""
+        """Return the outputs that make a value uncertain: the value itself, and outputs upstream of it."""
         return self.by_error(self._beneath_of(reference) | self._own(reference))
 
     def unknown(self, upstream: Upstream) -> Mask:
-        """Return the rows in which the error of any output is unknown, or not propagated."""
+        """Return the rows in which the error of any output is unknown or is not propagated."""
         count = self.calculation.count
         unknown = np.full(count, bool(upstream.stopped))
         for origin in upstream.unknown:
@@ -112,7 +112,7 @@ class Shifts:
     def shifts(
         self, references: Mapping[str, Reference], upstream: Upstream
     ) -> tuple[list[Shifted], Upstream]:
-        """Return the values of names with each uncertain output at the lower and the upper end of its band.
+        """Return the values of names with each uncertain output at the lower and upper end of its band.
 
         Uncertain outputs that are too expensive to propagate are returned as stopped.
         """
@@ -138,7 +138,7 @@ class Shifts:
         }
 
     def by_error(self, origins: Origins) -> Upstream:
-        """Return outputs sorted by what is known of their errors; exact outputs are left out."""
+        """Return the outputs grouped by what is known about their errors; exact outputs are omitted."""
         if origins == NONE:
             return NOTHING
         kinds = {origin: self._kinds(origin) for origin in origins.carried | origins.stopped}
@@ -149,7 +149,7 @@ class Shifts:
         return Upstream(uncertain, unknown, frozenset(one for one in origins.stopped if kinds[one]))
 
     def _kinds(self, origin: Reference) -> frozenset[str]:
-        """Return the groups of `Upstream` to which an output belongs; with many rows it may be several."""
+        """Return the groups of `Upstream` to which an output belongs; with many rows there may be several."""
         estimate = self.estimate(origin)
         if isinstance(estimate, Absent):
             return frozenset()
@@ -187,7 +187,9 @@ class Shifts:
         if reference in self.calculation.given:
             return NONE
         if cell := graph.cell(reference):
-            return _joined(self._behind(used) for used in cell.uses.values()) if cell.uses else NONE
+            if cell.roundings or not cell.uses:  # a rounded size is exact: it is chosen, whatever its sources
+                return NONE
+            return _joined(self._behind(used) for used in cell.uses.values())
         block = graph.blocks.get(reference.block)
         if block is None:
             return NONE
@@ -199,11 +201,11 @@ class Shifts:
         return self._origins(reference) | self._own(reference)
 
     def _own(self, reference: Reference) -> Origins:
-        """Return a name as an origin of error if it is a calculated output of a step, else nothing."""
+        """Return a name as an origin of error if it is a calculated output of a step; otherwise nothing."""
         return Origins(frozenset({reference})) if self.calculation.is_output(reference) else NONE
 
     def _of_block(self, block: Block, member: str) -> Origins:
-        """Return the origins of an input or output of a block, traced through the block's cells."""
+        """Return the origins of error of a block's input or output, traced through the block's cells."""
         declared = block.cls.inputs.get(member) or block.cls.formulas[member]
         try:
             beneath = self.calculation.instance(block.name).depends_on(declared.attribute)
@@ -215,11 +217,11 @@ class Shifts:
         return origins.without() if origins != NONE and self._is_expensive(block) else origins
 
     def _is_expensive(self, block: Block) -> bool:
-        """Return whether the estimated time of a step is too long for repeated recalculation."""
+        """Return whether a step takes too long to be recalculated repeatedly."""
         return not block.is_model and self._estimated_seconds(block) > EXPENSIVE
 
     def _estimated_seconds(self, block: Block) -> float:
-        """Estimate the time of a step for one row [s], as in a separate design."""
+        """Estimate the time of a step for one row [s], as for a separate design."""
         raw = {name: self._first(cell) for name, cell in block.cells.items()}
         level, evaluation = self._levels[block.name], self.calculation.evaluations.get(block.name)
         outputs = list(evaluation.outputs) if evaluation else self.calculation.graph.computed(block)
@@ -230,7 +232,7 @@ class Shifts:
         return self.calculation.levels_used()
 
     def _first(self, cell: Cell) -> Raw:
-        """Return the value of a cell in the first row, as an input for an estimate of time."""
+        """Return the value of a cell in the first row, for use in an estimate of time."""
         column = self.calculation.values.get(cell.name)
         if column is None or cell.declared is None or not column.is_row:
             return self.calculation.typed.get(cell.name, cell.raw)

@@ -126,7 +126,7 @@ class StepRows:
         return self._joined([(part.rows, self._error(part, output)) for part in self.parts])
 
     def absence(self, output: str) -> str | None:
-        """Return the first reason why an output has no value in a row that is not refused, else None."""
+        """Return the first reason for a missing value in a row that is not refused; otherwise None."""
         for part in self.parts:
             answer = part.answers[output]
             if answer.value is None:
@@ -187,7 +187,8 @@ def step_rows(
 ) -> StepRows:
     """Evaluate a step for `count` rows; rows with a missing input are left out.
 
-    Without a `level` it uses the starting level of the first rows, or the level `started` of earlier rows.
+    If no `level` is given, the step uses the starting level of the first rows, or the level `started` of
+    earlier rows.
 
     Raises
     ------
@@ -206,7 +207,7 @@ def step_rows(
 
 
 def _grouped(block: Block, columns: Mapping[str, Column], rows: Indices) -> Iterator[Indices]:
-    """Yield groups of rows for one array call; the rows of a group agree in inputs that cannot be arrays."""
+    """Yield groups of rows, one for each array call; rows in a group agree in inputs that must be equal."""
     if not rows.size:
         return
     shared = [
@@ -237,7 +238,7 @@ class _Evaluator:
     is_level_given: bool
 
     def evaluate(self, rows: Indices) -> None:
-        """Evaluate some rows; if a call is refused, evaluate its halves, down to single rows."""
+        """Evaluate some rows; if a call is refused, evaluate each half of them, down to single rows."""
         try:
             part = self._part(rows)
         except InvalidInputs as error:
@@ -292,7 +293,7 @@ class _Evaluator:
         return TypedQuantity(None, declared.meaning.unit, si if np.ndim(si) else float(si), {})
 
     def _places(self, declared: Curve) -> int:
-        """Return the number of points of the other curves along the same axis."""
+        """Return the number of points of other curves along the same axis."""
         lengths = [1]
         for name, value in self.given.items():
             other = self.step.block.cls.inputs[name]

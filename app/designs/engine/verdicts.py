@@ -79,7 +79,7 @@ class JudgedColumn:
     is_known: bool
 
     def within(self, whole: JudgedColumn | None, chunk: slice, count: int) -> JudgedColumn:
-        """Return a column of `count` rows with this chunk filled in; the other rows come from `whole`."""
+        """Return a column of `count` rows that includes this chunk; its other rows come from `whole`."""
         columns = _columns(whole, count)
         for name in COLUMNS:
             columns[name][chunk] = getattr(self, name)
@@ -142,11 +142,11 @@ class Verdicts:
         return self._subjects[name]
 
     def references(self, name: str) -> Mapping[str, Reference]:
-        """Return the values that a criterion names, without typed limits."""
+        """Return the values that a criterion names, without limits that the user typed."""
         return self._subjects[name].references
 
     def uncertain(self, name: str) -> frozenset[Reference]:
-        """Return the step outputs whose errors, known or not, widen the band of a criterion."""
+        """Return the step outputs whose errors widen the band of a criterion, whether known or not."""
         subject = self._subjects[name]
         judged = [subject, *(one for _, one in subject.instead)]
         references = (reference for one in judged for reference in one.references.values())
@@ -192,7 +192,7 @@ class Verdicts:
         yield _named(judgement, block, subject.demand)
 
     def _instead(self, block: Block, evaluated: EvaluatedValues, criterion: Criterion) -> Instead | None:
-        """Return the judgement of the alternative comparison if a value is missing, else None."""
+        """Return the judgement of the alternative comparison if a value is missing; otherwise None."""
         missing = missing_of(evaluated, criterion)
         if missing is None or missing.instead is None:
             return None
@@ -217,7 +217,7 @@ class Verdicts:
         return self._judged(subject, rows, along, more, instead)
 
     def _waiting_limits(self, block: Block, criterion: Criterion) -> dict[str, Absent]:
-        """Return the limits whose relations have no value yet, each with that reason.
+        """Return the limits whose relations have no value yet; each is absent for that reason.
 
         A library row does not replace such a limit.
         """
@@ -240,7 +240,7 @@ class Verdicts:
         return self._judged(subject, estimates, along, more, None)
 
     def _stated_by(self, demand: Demand) -> dict[str, str | None]:
-        """Return the level and the error reference of a step's output that a criterion judges directly."""
+        """Return the level and the truth of a step's output that a criterion judges directly."""
         subject = demand.criterion.subject if demand.criterion else None
         reference = demand.uses[subject] if subject else None
         evaluated = self._evaluated(reference.block) if reference and reference.output else None
@@ -306,7 +306,7 @@ class Verdicts:
         return _Sides(fitted, shifts, unknown, self._is_known(estimates, upstream, rank))
 
     def _is_known(self, estimates: Mapping[str, RowEstimate], upstream: Upstream, rank: int) -> Truth:
-        """Return where the errors of all upstream outputs are known."""
+        """Return a mask of the rows in which the errors of all upstream outputs are known."""
         if not (upstream.unknown or upstream.stopped):
             return True
         certain = ~self._shifts.unknown(upstream)
@@ -335,7 +335,7 @@ class Verdicts:
             return Absent((), f"{reference} waits for a solid or for its calculation")
 
     def _inside(self, reference: Reference) -> RowEstimate | Absent:
-        """Return an input or output of a step as used in its evaluation."""
+        """Return an input or output of a step as its evaluation used it."""
         step, parts = self.calculation.step(reference.block), self._parts(reference.block)
         if step is None or not parts:
             return Absent((), f"{reference.block} waits for its calculation")
@@ -380,7 +380,7 @@ class Verdicts:
         return {**block.limits, **given}
 
     def _of_rows(self, subject: Subject) -> dict[str, RowEstimate]:
-        """Return the existing values among those that a criterion names in the rows."""
+        """Return those values named by a criterion that exist in the rows."""
         block = subject.block
         if block is not None and block.is_model:
             return {}
@@ -397,7 +397,7 @@ class Verdicts:
         return estimates
 
     def _limit(self, subject: Subject, limit: Limit, others: Mapping[str, RowEstimate]) -> RowEstimate | None:
-        """Return a limit set by the user or by default: one for all rows, or a curve beside another curve."""
+        """Return a limit that the user or a default sets: one value for all rows, or a curve."""
         assert subject.block is not None
         given = subject.block.limits.get(limit.name)
         if given is not None:
@@ -426,7 +426,7 @@ class Verdicts:
         return codes, _column(subject.criterion, numbers)
 
     def _filled(self, subject: Subject, codes: RowCodes) -> RowCodes:
-        """Return verdicts; rows with a missing value get the verdict of the alternative comparison."""
+        """Return the verdicts; a row with a missing value gets that of the alternative comparison."""
         for missing, instead in subject.instead:
             if not instead.is_due(self.calculation.graph) or subject.block is None:
                 continue
@@ -441,7 +441,7 @@ class Verdicts:
     def _not_checked(
         self, criterion: Criterion, estimates: Mapping[str, RowEstimate]
     ) -> tuple[RowCodes, JudgedColumn]:
-        """Return "not checked" for every row, with the sides that have single values."""
+        """Return the verdict "not checked" for every row, with the sides that are single values."""
         count = self.calculation.count
         nothing = np.full(count, np.nan)
         value, limit = (self._side(side, estimates) for side in (criterion.value, criterion.limit))
@@ -450,7 +450,7 @@ class Verdicts:
         return np.full(count, NOT_CHECKED, dtype=np.int8), column
 
     def _side(self, side: Relation, estimates: Mapping[str, RowEstimate]) -> Array:
-        """Return the value of one side of a criterion in each row; NaN if it is a curve or incomplete."""
+        """Return the value of one side of a criterion in each row; NaN for curves or missing values."""
         count = self.calculation.count
         if side.names <= estimates.keys() and not any(estimates[n].value.rank for n in side.names):
             value = side_of(side, {name: estimates[name].padded(0) for name in side.names})
@@ -469,7 +469,7 @@ def _padded(
 
 
 def _column(criterion: Criterion, sides: list[Array]) -> JudgedColumn:
-    """Return the two sides, utilisation and margin of a criterion in each row."""
+    """Return both sides of a criterion, the utilisation and the margin in each row."""
     value, limit, low, high, *_, certain = sides
     is_least = criterion.sign == ">="
     with np.errstate(all="ignore"):
@@ -481,14 +481,14 @@ def _column(criterion: Criterion, sides: list[Array]) -> JudgedColumn:
 
 
 def _explained(result: Judgement, sides: _Sides) -> Judgement:
-    """Return a judgement with a reason that names the upstream outputs of unknown error."""
+    """Return a judgement whose reason names the upstream outputs with unknown errors."""
     if sides.unknown and not result.error_known and result.margin is not None:
         return replace(result, reason=unknown_error(map(in_words, map(str, sides.unknown)), result.verdict))
     return result
 
 
 def _operations(criterion: Criterion, estimates: Mapping[str, RowEstimate], upstream: Upstream) -> int:
-    """Count the operations on single values that judging a criterion takes in one row, shifts included."""
+    """Return the number of operations on single values for judging a criterion in one row, with shifts."""
     points = spanned(estimate.value.places for estimate in estimates.values())
     limit_values(points)
     times = 1 + 2 * (len(estimates) + len(upstream.uncertain))
@@ -496,7 +496,7 @@ def _operations(criterion: Criterion, estimates: Mapping[str, RowEstimate], upst
 
 
 def _named(judgement: Judgement, block: Block, demand: Demand | None) -> Judgement:
-    """Return a judgement under the criterion's name in the design, with the design's changes."""
+    """Return a judgement under the name that the criterion has in the design, with the design's changes."""
     written = demand.written if demand else None
     return replace(
         judgement,

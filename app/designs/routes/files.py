@@ -41,8 +41,7 @@ from app.storage.database import Database
 from app.storage.errors import NotFound
 from app.storage.tables import RevisionModelRow
 from cad.drafting.paper import TYPESETTER
-from cad.export import DRAWINGS, MEDIA_TYPES
-from cad.file_kinds import plain_kind, with_deflection, with_part
+from cad.file_kinds import DRAWINGS, MEDIA_TYPES, plain_kind, with_deflection, with_part
 from cad.file_names import plain_name
 from cad.stamp import STAMPED, Stamp, stamped, takes_stamp
 
@@ -148,11 +147,11 @@ class FileRequest:
             kind = self._stored_kind(wanted)
             is_drawing = plain_kind(kind) in DRAWINGS
             stamp = stamps.signed(session, model, self.owner) if is_drawing else stamps.stamp(session, model)
-            stamp = self.title_block.on(stamp, wanted)
+            stamp = replace(self.title_block.on(stamp, wanted), part=self.part or "")
             return model.build_key or "", kind, stamp, views.file(session, model, kind)
 
     def _stored_kind(self, wanted: str) -> str:
-        """Return the stored kind of file from which the requested kind is made."""
+        """Return the kind of stored file from which the requested kind is derived."""
         kind = PRINTED.get(wanted, wanted)
         if self.deflection is not None:
             kind = with_deflection(wanted, self.deflection)
@@ -161,7 +160,7 @@ class FileRequest:
         return kind
 
     async def _unless_ready(self, key: str, kind: str, prefer: str, *, has_older: bool) -> Response | None:
-        """Return None once the file exists, 202 if the client stops waiting, or why it cannot be created."""
+        """Return None once the file exists; before that, 202 or the reason why it cannot be created."""
         job = await run_in_threadpool(self.models.request_file, key, kind, self.client)
         if not await finished(self.jobs, job, prefer):
             return accepted(job)
@@ -206,7 +205,7 @@ async def plain_file_request(
     prefer: Prefer = None,
     if_none_match: IfNoneMatch = None,
 ) -> FileRequest:
-    """Return the parts that all requests for files have in common."""
+    """Return the parts that all requests for files share."""
     return FileRequest(
         database,
         store,
@@ -267,7 +266,7 @@ async def read_model_file(
 
 
 def _is_outdated(models: Models, key: str, kind: str) -> bool:
-    """Return whether a drawing by an older program has no room for a stamp and must be drawn again."""
+    """Return whether a drawing from an older program lacks the lines for a stamp and must be drawn again."""
     file = models.file(key, kind) if kind in DRAWINGS else None
     return file is not None and not takes_stamp(models.store.read(file.sha256), kind)
 

@@ -67,6 +67,6 @@ def list_revisions(
 
 @router.get("/{id}/revisions/{number}", responses=refusals(404))
 def show_revision(id: Id, number: Number, database: TheDatabase) -> Revision:
-    """Return a revision: its inputs never change, and its results are added once."""
+    """Return a revision; its inputs never change, and its results are added once."""
     with database.read() as session:
         return views.revision(session, repository.lean(session, id, number))

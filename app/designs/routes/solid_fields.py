@@ -21,8 +21,8 @@ from app.http.strict_requests import StrictRoute
 from app.schemas.problems import RouteOptions, refusals
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
-from cad.export import MEDIA_TYPES
 from cad.field_mesh import Glb
+from cad.file_kinds import MEDIA_TYPES
 from cad.file_names import name as wide_name
 from cad.file_names import plain_name
 
@@ -76,7 +76,7 @@ async def read_painted_solid(
     """Return a model whose surface colours show a field, as a GLB file or a picture.
 
     The part is grey where the field has no value. The GLB file's root node and the list of fields contain the
-    title of the field and the values of the first and the last colour.
+    title of the field and the values at the two ends of the colour scale.
     """
     database, store = request.database, request.store
     chosen = await run_in_threadpool(_chosen, database, catalogues, (id, number, name), field)

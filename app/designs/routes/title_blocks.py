@@ -9,7 +9,7 @@ from unicodedata import normalize
 from fastapi import Depends, Query
 
 from app.schemas.approval_steps import ORDER
-from cad.export import DRAWINGS, VALIDATED
+from cad.file_kinds import DRAWINGS, VALIDATED
 from cad.stamp import Stamp
 from templates.core.errors import Fault, InvalidInputs
 
@@ -82,12 +82,12 @@ def _contradictions(typed: dict[str, str], stamp: Stamp) -> list[Fault]:
 
 
 def _shown(text: str) -> str:
-    """Return a text as a drawing shows it: trimmed, with unprintable characters as spaces."""
+    """Return a text as a drawing shows it: trimmed, with unprintable characters replaced by spaces."""
     return "".join(sign if sign.isprintable() else " " for sign in text).strip()
 
 
 def _letters(text: str) -> str:
-    """Return a text reduced to small Latin letters.
+    """Return a text reduced to lower-case Latin letters.
 
     This finds texts such as `Released.` and `ｒeleased`, which look like `released` to a reader.
     """
@@ -104,7 +104,7 @@ def title_block(
     approved_by: Typed = "",
     document_status: Typed = "",
 ) -> TitleBlock:
-    """Return the typed texts of a request: fields of ISO 7200; for a STEP file, number and revision."""
+    """Return the typed texts of a request: fields of ISO 7200, or for a STEP file number and revision."""
     return TitleBlock(
         {
             "legal_owner": legal_owner,

@@ -279,7 +279,7 @@ def _file(store: Artifacts, entry: Entry) -> bytes:
 
 
 def _tag(names: Sequence[str], ready: Sequence[Entry]) -> str:
-    """Return a strong ETag, because the ZIP depends only on these values."""
+    """Return a strong ETag for the ZIP, which depends only on these values."""
     parts = (
         f"{name}\0{entry.sha256}\0{entry.stamp.date}\0{entry.stamp.material}\n"
         for name, entry in zip(names, ready, strict=True)

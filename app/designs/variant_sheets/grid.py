@@ -104,6 +104,6 @@ def column_of(letters: str) -> int:
 
 
 def cell_of(address: str) -> tuple[int, int] | None:
-    """Return row and column of an address, counted from 0: (3, 3) for `D4`; None if it is no address."""
+    """Return the row and column of an address, counted from 0: (3, 3) for `D4`; None if it is no address."""
     match = _ADDRESS.fullmatch(address)
     return (int(match["row"]) - 1, column_of(match["column"])) if match else None

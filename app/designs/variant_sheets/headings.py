@@ -8,10 +8,10 @@ from app.reference import Reference
 
 
 def place_named(heading: str, places: Collection[str]) -> str:
-    """Return the place that a heading refers to, by its full name or by the words of its input.
+    """Return the place to which a heading refers, by its full name or by the words of its input.
 
-    If no place or several places fit, return the heading. `Radial load` refers to `film.radial_load` if no
-    other step has an input with these words.
+    If no place or several places fit, return the heading itself. `Radial load` refers to `film.radial_load`
+    if no other step has an input with these words.
     """
     if heading in places:
         return heading

@@ -47,7 +47,7 @@ class SheetVariants:
     ]  # addresses of values by variant and place; of names by variant and ""
 
     def named(self, error: InvalidInputs) -> InvalidInputs:
-        """Return the faults of a save, with the addresses of the variants' cells as places."""
+        """Return the faults of a save, located by the addresses of the variants' cells."""
         return InvalidInputs(self._named(fault) for fault in error.faults)
 
     def without(self, faults: Iterable[Fault]) -> SheetVariants:
@@ -112,14 +112,14 @@ def _refuse_many(grid: Grid, skipped: Collection[int]) -> None:
 
 
 def _skipped(grid: Grid) -> set[int]:
-    """Return the columns of results, which are never read."""
+    """Return the columns of results, which the reader ignores."""
     return {at for at in range(grid.width) if grid.cell(0, at).lower().startswith(RESULTS)}
 
 
 def _columns(
     grid: Grid, units: Units, skipped: Collection[int], faults: list[Fault], *, has_units: bool
 ) -> Iterator[Column]:
-    """Yield the columns of inputs; add faults of their headings and units to the list."""
+    """Yield the columns of inputs, and add faults in their headings and units to the list."""
     if grid.cell(0, 0).lower() != FIRST:
         message = f"the first column contains the names of the variants; its heading is {FIRST!r}"
         faults.append(Fault("A1", "missing_name", message))
@@ -196,7 +196,7 @@ def _name(grid: Grid, row: int, variants: Collection[str], faults: list[Fault]) 
 def _values(
     grid: Grid, row: int, columns: list[Column], units: Units, wrong: Collection[str], faults: list[Fault]
 ) -> dict[str, tuple[int, Raw]]:
-    """Return column and value of every parameter that a row sets; unreadable cells add faults."""
+    """Return the column and value of every parameter that a row sets; unreadable cells add faults."""
     values: dict[str, tuple[int, Raw]] = {}
     for column in columns:
         text, where = grid.cell(row, column.number), address(row, column.number)

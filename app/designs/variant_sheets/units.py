@@ -16,7 +16,7 @@ from templates.core.units.relation import is_relation
 def units_of(network: Network) -> Units:
     """Return units by place; None for a choice, and for a parameter that a relation sets.
 
-    A radial clearance is included besides the diametral one, to which a save converts it.
+    A radial clearance is listed in addition to the diametral one, to which a save converts it.
     """
     declared = {place: _unit(network, Reference.parse(place)) for place in places(network)}
     sizes = (

@@ -35,7 +35,7 @@ class Shape:
 
 
 def shape(raw: Raw) -> Shape:
-    """Return the form in which a typed value is written to a cell."""
+    """Return a typed value in the form of a cell."""
     if is_relation(raw):
         return Shape(str(raw).strip().removeprefix("=").strip(), is_relation=True)
     number = _number(raw)
@@ -43,7 +43,7 @@ def shape(raw: Raw) -> Shape:
 
 
 def _number(raw: Raw) -> tuple[float, str] | None:
-    """Return number and unit of a plain quantity; None for any other value, such as one with a tolerance."""
+    """Return the number and unit of a plain quantity; None for other values, such as one with a tolerance."""
     if isinstance(raw, Mapping) and raw.keys() == {"value", "unit"} and isinstance(raw["unit"], str):
         bare = _number(raw["value"]) if not isinstance(raw["value"], str) else None
         return (bare[0], raw["unit"]) if bare else None
@@ -89,7 +89,7 @@ def relation(text: str) -> str:
 
 
 def given(text: str, column: str, declared: str | None) -> Raw:
-    """Return the value of a cell, given the unit `column` of its column, which may be empty.
+    """Return the value of a cell; `column` is the unit of its column, which may be empty.
 
     `declared` is the declared unit of the place; None for a choice, or if it is unknown.
 

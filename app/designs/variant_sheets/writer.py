@@ -43,7 +43,7 @@ def rows_of(columns: Sequence[SheetColumn]) -> list[list[Value]]:
 
 
 def _of_place(out: VariantsOut, about: VariantColumn) -> Iterable[SheetColumn]:
-    """Yield a column for the values of a place, and another one if it has relations."""
+    """Yield a column for the values of a place, and a second column if it has relations."""
     raws = [overrides.get(about.place) for overrides in out.variants.values()]
     shapes = [None if raw is None else shape(raw) for raw in raws]
     if any(one and not one.is_relation for one in shapes):
@@ -95,28 +95,40 @@ def _cell(one: Shape | None, raw: object, unit: str) -> Value:
 
 
 def _results(out: VariantsOut, names: Sequence[str]) -> Iterable[SheetColumn]:
-    """Yield the columns of results: verdict and governing criterion of variants, then each criterion."""
-    rows = {row.name: row for row in out.rows}
+    """Yield the columns of the table of results, then the verdict on each criterion."""
+    rows, shown = {row.name: row for row in out.rows}, {row.name: row for row in out.table.rows}
     results = [rows.get(name) for name in names]
-    if any(row and row.problem for row in results):
-        problems = [row.problem.detail if row and row.problem else None for row in results]
-        yield _result("problem", "", problems)
-    if not any(row and row.verdict for row in results):
+    listed = [shown.get(name) for name in names]
+    if any(row and row.problem for row in listed):
+        yield _result("problem", "", [row.problem if row else None for row in listed])
+    for at, column in enumerate(out.table.columns):
+        yield _result(column.words, column.unit or "", [row.values[at] if row else None for row in listed])
+        if any(row and row.changes for row in listed):
+            changes = [row.changes[at] if row else None for row in listed]
+            yield _result(f"{column.words} change", "%", [_percent(change) for change in changes])
+    if not any(row and row.verdict for row in listed):
         return
-    verdicts = [row.verdict if row else None for row in results]
-    yield _result("verdict", "", [one.headline if one else None for one in verdicts])
-    yield _result("governing", "", [one.governing if one else None for one in verdicts])
+    yield _result("governing", "", [row.criterion_words if row else None for row in listed])
+    yield _result("used", "1", [_rounded(row.utilisation if row else None) for row in listed])
+    yield _result("verdict", "", [one.verdict.headline if one and one.verdict else None for one in results])
     for name in dict.fromkeys(one.name for row in results if row for one in row.criteria):
         yield from _of_criterion(name, results)
+
+
+def _percent(change: float | None) -> float | None:
+    return None if change is None else round(100 * change, DIGITS)
+
+
+def _rounded(used: float | None) -> float | None:
+    return None if used is None else round(used, DIGITS)
 
 
 def _of_criterion(name: str, results: Sequence[VariantResult | None]) -> Iterable[SheetColumn]:
     judged = [_criterion(row, name) for row in results]
     yield _result(name, "", [WORDS[one.verdict] if one else None for one in judged])
     if any(one and one.utilisation is not None for one in judged):
-        used = [one.utilisation if one else None for one in judged]
-        cells = [None if value is None else round(value, DIGITS) for value in used]
-        yield _result(f"{name} used", "1", cells)
+        used = [_rounded(one.utilisation if one else None) for one in judged]
+        yield _result(f"{name} used", "1", used)
 
 
 def _criterion(row: VariantResult | None, name: str) -> Criterion | None:

@@ -108,7 +108,7 @@ def _cells(sheet: Worksheet) -> tuple[list[list[str]], list[Fault]]:
 
 
 def _first(rows: Iterable[Sequence[_Cell]]) -> Iterator[Sequence[_Cell]]:
-    """Yield the allowed rows, then the first row below them that has a value, which will be refused."""
+    """Yield the allowed rows, then the first row below them with a value, which is refused later."""
     for number, row in enumerate(rows):
         if number < LAST_ROW:
             yield row

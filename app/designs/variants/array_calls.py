@@ -39,10 +39,11 @@ class StepInputs:
         return self.graph.computed(self.block)
 
     def form(self) -> Hashable:
-        """Return the key of an array call, equal for variants that can share it.
+        """Return the key of an array call, which is equal for variants that can share it.
 
-        The key has the step, the names of the inputs, the shapes of curves, and the values of choices, tables
-        and inputs that must be equal for all points. It is None for a variant that must be calculated alone.
+        The key contains the step, the names of the inputs, the shapes of curves, and the values of choices,
+        tables and inputs that must be equal at all points. It is None for a variant that must be calculated
+        alone.
         """
         parts = [(name, _form(self.block, name, raw)) for name, raw in sorted(self.raw.items())]
         if any(form is None for _, form in parts):
@@ -62,7 +63,7 @@ def _form(block: Block, name: str, raw: Raw) -> Hashable:
 
 
 def evaluations(asked: Sequence[StepInputs]) -> list[DocumentCalculation | None]:
-    """Return the evaluation of each variant; `DEFERRED` if the caller does not wait for it.
+    """Return the evaluation of each variant, or `DEFERRED` if the caller does not wait for it.
 
     The entry is None if the variant must be calculated alone.
     """
@@ -90,7 +91,7 @@ def _chunks(block: Block, places: Sequence[int]) -> Iterator[Sequence[int]]:
 
 
 def _shared(asked: Sequence[StepInputs]) -> Sequence[DocumentCalculation | None]:
-    """Return the evaluations of one array call; if it is refused, of two calls for its halves."""
+    """Return the evaluations of one array call, or of two calls for its halves if it is refused."""
     if len(asked) < 2:
         return [None] * len(asked)  # a single variant is calculated in the normal way
     first = asked[0]
@@ -142,7 +143,7 @@ class _Rows:
     def _template(self, row: int, asked: StepInputs) -> Template:
         """Return the template of one variant with the values that the array call has computed.
 
-        Values that are missing in the row are left out, so that the template itself determines the reason.
+        Values that are missing in the row are omitted, so that the template itself determines the reason.
         """
         cls, level = asked.block.cls, self.whole.level
         template = cls.from_quantities(asked.raw)

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from app.catalogue.catalogues import Catalogues
 from app.designs.document import Document
-from app.designs.graph import Graph, build_graph
+from app.designs.graph import Graph
 from app.designs.network import Cell
 from app.designs.schemas.variants import VariantColumn
 from app.designs.variants.outcome import base_unit
 from app.designs.variants.table import places
-from app.plain import JsonObject
 from app.reference import Reference
 from app.schemas.answers import Shown
 from templates.core.errors import FaultyText
@@ -17,15 +15,11 @@ from templates.core.language.spec import Choice, Input
 from templates.core.units.quantity import TypedQuantity, read, read_any
 
 
-def columns(plain: JsonObject, catalogues: Catalogues) -> list[VariantColumn]:
-    """Return the columns of a stored document's table.
+def columns(document: Document, graph: Graph) -> list[VariantColumn]:
+    """Return the columns of a document's table.
 
     Parameters come first, then steps and models, in declaration order.
     """
-    if not plain.get("variants"):
-        return []
-    document = Document.model_validate(plain)
-    graph, _ = build_graph(document, catalogues)
     used = {place: None for overrides in document.variants.values() for place in overrides}
     ordered = dict.fromkeys([*(place for place in places(graph) if place in used), *used])
     return [_column(place, graph) for place in ordered]
@@ -56,7 +50,7 @@ def _unit(place: str, cell: Cell | None, declared: Input | None, graph: Graph) -
 
 
 def _nominal(cell: Cell | None) -> Shown | None:
-    """Return the design's own value as typed; None if a relation sets it, or nothing does."""
+    """Return the design's own value as the user typed it; None if a relation or nothing sets it."""
     if cell is None or cell.relations:
         return None
     if isinstance(cell.declared, Choice):

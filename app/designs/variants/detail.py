@@ -20,6 +20,7 @@ from app.designs.errors import DesignError
 from app.designs.graph import raise_if
 from app.designs.questions import settled
 from app.designs.results import Outcome
+from app.designs.roundings import as_member
 from app.designs.schemas.variants import VariantDetail
 from app.designs.variants.names import BASE
 from app.designs.variants.together import Available, together
@@ -53,7 +54,7 @@ class WantedVariant:
 def detailed(
     wanted: WantedVariant, database: Database, catalogues: Catalogues
 ) -> Reply[WantedVariant, VariantDetail]:
-    """Return the variant, or the request to continue if a step is deferred.
+    """Return the variant, or the request to continue with if a step is deferred.
 
     Raises
     ------
@@ -74,7 +75,7 @@ def detailed(
 
 
 def _alone(document: Document, wanted: WantedVariant) -> Document:
-    """Return the document with only the requested variant."""
+    """Return the document with the requested variant as its only one."""
     variants = {BASE: {}, **document.variants}
     if wanted.variant not in variants:
         there = f"there are {', '.join(variants)}"
@@ -96,14 +97,22 @@ def _shown(wanted: WantedVariant, number: int, outcome: Outcome) -> VariantDetai
             "revision": number,
             "name": wanted.variant,
             "values": outcome.values,
+            **as_member(outcome.calculation),
+            "inputs": dict(_inputs(outcome.calculation)),
             "outputs": {name: outputs[name] for name in wanted.outputs or outputs},
             **rendered(worst_first(outcome.judgements)),
         }
     ).in_units(wanted.system)
 
 
+def _inputs(calculation: Calculation) -> Iterator[tuple[str, object]]:
+    """Yield name and value of every input of the calculated steps."""
+    for step, evaluation in calculation.evaluations.items():
+        yield from ((f"{step}.{name}", one) for name, one in json_values.inputs(evaluation.inputs).items())
+
+
 def _outputs(calculation: Calculation) -> Iterator[tuple[str, Output]]:
-    """Yield name and value of every step output.
+    """Yield the name and value of every step output.
 
     The value is null with its reason while the step is pending.
     """

@@ -34,7 +34,7 @@ class Entry:
 def variant_model(
     session: Session, id: str, variant: str, model: str | None, number: int | None
 ) -> RevisionModelRow:
-    """Return the model of a variant to serve: from one revision, or the newest valid one of the design.
+    """Return the model of a variant to serve: from the given revision, or the newest valid one.
 
     Raises
     ------
@@ -101,7 +101,7 @@ def _model_named(row: RevisionRow, id: str, variant: str, model: str | None) -> 
 def _good(
     session: Session, row: RevisionRow, variant: str, model: str, number: int | None
 ) -> RevisionModelRow | None:
-    """Return the model of a variant if it is built: in one revision, or in the newest with a solid."""
+    """Return the built model of a variant from the given revision, or from the newest with a solid."""
     name = dotted(variant, model)
     if number is None:
         return repository.newest_good(session, row.design_id, name, row.number)
@@ -110,7 +110,7 @@ def _good(
 
 
 def _why(row: RevisionRow, variant: str, model: str) -> str:
-    """Return why a model of a variant has no solid."""
+    """Return the reason why a model of a variant has no solid."""
     if row.state == "regenerating":
         return "it is being regenerated: ask again, or follow /events"
     stored: JsonObject = (row.results or {}).get("variants", {}).get(variant, {})

@@ -31,7 +31,7 @@ def natural(name: str) -> NaturalKey:
 
 
 def dotted(variant: str, model: str) -> str:
-    """Return the name of a variant's model as stored with the revision: `main_2.shell`.
+    """Return the name under which a revision stores a variant's model: `main_2.shell`.
 
     The name of a model of the design itself has no dot.
     """

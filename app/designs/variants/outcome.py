@@ -59,7 +59,7 @@ def outcome_of(name: str, places: Mapping[str, str], document: Document, calcula
 
 
 def values(calculation: Calculation, places: Mapping[str, str]) -> dict[str, JsonObject]:
-    """Return the overridden values as quantities, without pending ones."""
+    """Return the overridden values as quantities, except pending ones."""
     shown = {place: _value(calculation, place, unit) for place, unit in places.items()}
     return {place: value for place, value in shown.items() if value is not None}
 

@@ -33,7 +33,7 @@ def replace_variants(
 
 
 def patch_between(old: Table, new: Table) -> JsonObject:
-    """Return the merge patch that turns one table into another."""
+    """Return the merge patch that converts one table to another."""
     gone: JsonObject = {name: None for name in old if name not in new}
     kept = {
         name: {**{place: None for place in old.get(name, {}) if place not in values}, **values}

@@ -71,7 +71,7 @@ def faulty_cells(document: Document, graph: Graph) -> Cells:
 
 
 def _other_kind(graph: Graph, variant: str, place: str, value: Raw) -> Fault | None:
-    """Return a fault if a parameter has a unit of another kind than in the design, else None."""
+    """Return a fault if the unit of a parameter has another kind than in the design; otherwise None."""
     cell, kind = graph.parameters.get(place), graph.kinds.get(place)
     if cell is None or kind is None or is_relation(value) or isinstance(value, list):
         return None

@@ -51,7 +51,7 @@ class _Run:
     at: Block | None = field(default=None)  # the next step
 
     def advance(self, available: Available) -> None:
-        """Calculate everything up to the next step."""
+        """Calculate everything before the next step."""
         if self.at is not None:
             self._calculate(self.at, available)
         self.at = None
@@ -93,14 +93,14 @@ def together(document: Document, available: Available) -> list[Outcome]:
 
 
 def _limit(runs: Sequence[_Run]) -> None:
-    """Stop all variants once their relations together exceed the operations allowed for one design."""
+    """Stop all variants once their relations together need more operations than one design may."""
     if sum(run.calculation.operations for run in runs) > MOST_OPERATIONS:
         for run in runs:
             run.stop()
 
 
 def _begun(document: Document, name: str, available: Available) -> _Run | Outcome:
-    """Return a variant ready for calculation, or its outcome if its network has faults."""
+    """Return a variant that is ready for calculation, or its outcome if its network has faults."""
     overrides = document.variants[name]
     own = applied(document, overrides)
     graph, faults = build_graph(own, available.catalogues)
@@ -115,7 +115,7 @@ def _begun(document: Document, name: str, available: Available) -> _Run | Outcom
 
 
 def _by_step(runs: Sequence[_Run]) -> list[list[_Run]]:
-    """Return the variants that wait at one step: the step at which most of them wait."""
+    """Return the variants that wait at the same step, namely the step at which most of them wait."""
     steps: dict[str, list[_Run]] = {}
     for run in runs:
         assert run.at is not None, "it waits at a step"

@@ -19,7 +19,7 @@ Judged = Mapping[str, Sequence[Judgement]]
 
 
 def merged(base: Sequence[Judgement], variants: Judged) -> list[Judgement]:
-    """Return every criterion of a design as judged for its worst variant, worst first.
+    """Return every criterion of a design with the judgement of its worst variant, worst first.
 
     Without variants the list is unchanged. The points of a merged criterion are the variants and the design
     itself. A limit that is unverified for one variant is unverified for all.

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from sqlalchemy.orm import Session
 
 from app.catalogue.catalogues import Catalogues
-from app.designs import repository
+from app.designs import repository, tolerances
+from app.designs.document import Document
+from app.designs.graph import Graph, build_graph
+from app.designs.result_table import table
+from app.designs.results import TABLE
+from app.designs.roundings import ROUNDED
+from app.designs.schemas.result_table import ResultTable
 from app.designs.schemas.variants import (
     GoverningVariant,
     ModelState,
@@ -53,17 +59,31 @@ def variants(
     worst = _governing(everybody)
     parts: JsonObject = {"base": base, "by_criterion": worst or None, "problem": row.problem}
     checked = [one for one in worst.values() if one.verdict != "not_checked"]
-    parts["governing"] = min(checked, key=_rank_of_governing, default=None)
+    governing = min(checked, key=_rank_of_governing, default=None)
+    document = Document.model_validate(row.document)
+    graph, _ = build_graph(document, catalogues)
+    parts |= {"governing": governing, "table": _results(row, everybody, document, graph, governing)}
     return VariantsOut(
         design=row.design_id,
         name=row.document["name"],
         revision=row.number,
         state=row.state,
         variants={name: row.document["variants"][name] for name in names},
-        columns=columns(row.document, catalogues),
+        columns=columns(document, graph),
         rows=results,
         **{name: part for name, part in parts.items() if part is not None},
     )
+
+
+def _results(
+    row: RevisionRow,
+    rows: Sequence[VariantResult],
+    document: Document,
+    graph: Graph,
+    governing: GoverningVariant | None,
+) -> ResultTable:
+    stored = (row.results or {}).get(TABLE, {})
+    return table(rows, stored, graph, governing, with_changes=document.table.changes)
 
 
 def _require_outputs(outputs: Collection[str], stored: Mapping[str, JsonObject]) -> None:
@@ -101,7 +121,7 @@ class _Table:
             for model in self.models.get(name, ())
         }
         parts: JsonObject = {
-            **{part: result[part] for part in ("criteria", "verdict", "problem") if part in result},
+            **{part: result[part] for part in ("criteria", "verdict", "problem", ROUNDED) if part in result},
             **({"outputs": dict(_chosen(result, outputs))} if outputs else {}),
         }
         return VariantResult.model_validate(
@@ -126,6 +146,8 @@ class _Table:
         parts: JsonObject = {"problem": problem} if problem else {}
         if build is not None:
             parts["measurements"] = measures.measurements(**build.measurements).plain()
+            if stated := tolerances.stated(row, build):
+                parts["tolerances"] = stated
         return VariantModel.model_validate(
             {
                 "build": row.build_key,
@@ -150,7 +172,7 @@ def _chosen(result: JsonObject, outputs: Collection[str]) -> Iterator[tuple[str,
 
 
 def _governing(results: Collection[VariantResult]) -> dict[str, GoverningVariant]:
-    """Return the worst variant of each criterion; the first of equally bad ones."""
+    """Return the worst variant of each criterion; of several equally bad ones the first."""
     worst: dict[str, GoverningVariant] = {}
     for result in results:
         for criterion in result.criteria:
@@ -165,5 +187,5 @@ def _governing(results: Collection[VariantResult]) -> dict[str, GoverningVariant
 
 
 def _rank_of_governing(one: GoverningVariant) -> tuple[int, float]:
-    """Return a sort key that puts the worst first."""
+    """Return a sort key that places the worst first."""
     return WORST_FIRST.index(one.verdict), -(one.utilisation or 0.0)

@@ -51,7 +51,7 @@ class Driven(Bounded):
         if not self.low <= self.value <= self.high:
             raise ValueError(f"the value {self.value:g} is not between {self.low:g} and {self.high:g}")
         if self.check and self.unit not in MM:
-            raise ValueError("only a length is read back from the solid")
+            raise ValueError("only a length can be read back from the solid")
         return self
 
     def described(self) -> Parameter:

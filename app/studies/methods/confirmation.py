@@ -157,10 +157,10 @@ class Run:
 
 
 def unmet(rounds: Sequence[Round]) -> State:
-    """Return the state of a search whose predictions agree, but whose points do not meet all criteria."""
+    """Return the state of a search whose predictions are right, but whose points do not meet all criteria."""
     return "infeasible" if any(NOT_MET in one.codes for one in rounds) else "undecided"
 
 
 def state_of_met(rounds: Sequence[Round]) -> State:
-    """Return the state of a search whose predictions agree, and whose points meet all criteria."""
+    """Return the state of a search whose predictions are right, and whose points meet all criteria."""
     return "settled" if all(one.is_known for one in rounds) else "unconfirmed"

@@ -132,7 +132,7 @@ def _state(done: list[Round]) -> State | None:
 
 
 def _optimum(run: Run, done: list[Round], state: State | None) -> Optimum:
-    """Return the optimum from the finished rounds; without a final state it is infeasible or not settled."""
+    """Return the optimum of the finished rounds; if `state` is None, it is infeasible or not settled."""
     sense = float(run.problem.senses[0])
     met = [one for one in done if one.is_met]
     chosen = done[-1]

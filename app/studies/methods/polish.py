@@ -135,7 +135,7 @@ class _Tangent:
 
 
 def _refused(free: int, held: int) -> Linear:
-    """Return a constant result so bad that the line search turns back."""
+    """Return a constant result that is poor enough to make the line search turn back."""
     return REFUSED, np.zeros(free), np.full(held, -1.0), np.zeros((held, free))
 
 

@@ -192,4 +192,6 @@ def _complete(output: str, y: Array, count: int) -> None:
     if missing := int(np.count_nonzero(~np.isfinite(y))):
         share = f"{missing} of {count} rows ({missing / count:.1%}) have no value of {output}"
         remedy = "narrow the bounds so that every row can be calculated"
-        raise InvalidInputs([Fault(output, "refused_rows", f"{share}, and sensitivities need all; {remedy}")])
+        raise InvalidInputs(
+            [Fault(output, "refused_rows", f"{share}, but sensitivities need a value in every row; {remedy}")]
+        )

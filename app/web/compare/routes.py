@@ -77,7 +77,7 @@ async def compare_page(request: Request, services: PageServices, id: str, asked:
 
 
 async def _other(services: PageServices, design: Design, id: str) -> Design | None:
-    """Return the design on the other side; None if there is no such design."""
+    """Return the other design of the comparison; None if it does not exist."""
     if not id:
         return design
     return await services.find(services.designs.show, id) if _ID.fullmatch(id) else None

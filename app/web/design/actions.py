@@ -41,7 +41,8 @@ router = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
 async def create(request: Request, services: ThePageServices) -> Response:
     """Create a design from the gallery, or one with a chosen template and model.
 
-    For a template, the user first fills in its inputs, so that its example is never saved as the user's own.
+    If a template is chosen, the user first fills in its inputs, so that example values are never saved as the
+    user's.
     """
     typed = await fields(request)
     example = GALLERY.get(typed.get("example", ""))
@@ -61,7 +62,7 @@ async def create(request: Request, services: ThePageServices) -> Response:
 async def _with_step(
     request: Request, services: PageServices, typed: Mapping[str, str], document: dict[str, JsonValue]
 ) -> Response:
-    """Create a design with one step; return the step's form if it is not filled in, or was refused."""
+    """Create a design with one step; return the form of the step if it is empty or was refused."""
     if "design_name" not in typed:  # the form of the home page: its name is that of the design
         await new_step(services, typed)  # a template that does not exist is refused here
         return go(address("/designs/new", {**typed, "design_name": str(document["name"]), "name": ""}))
@@ -195,7 +196,7 @@ async def _again(
     refused: Refused,
     part: Mapping[str, str] = NOTHING,
 ) -> Response:
-    """Return the page with a refused form; if the form is outdated, keep only the user's own changes."""
+    """Return the page with a refused form; of an outdated form keep only the user's own changes."""
     if refused.status not in (STALE, ILL_NAMED):
         raise refused
     notice = (
@@ -225,7 +226,7 @@ def _refuse_taken(design: Design, patch: Patch) -> None:
 
 
 def _block(typed: Mapping[str, str]) -> Patch:
-    """Return the merge patch that adds or removes the item named by a form."""
+    """Return the merge patch that adds or removes what a form names."""
     name = typed.get("name", "").strip()
     match typed.get("add", ""):
         case "parameter":
@@ -268,6 +269,6 @@ async def _label(services: PageServices, id: str, typed: dict[str, str]) -> None
 
 
 def _back(typed: dict[str, str]) -> Response:
-    """Redirect to the list from which a form was sent."""
+    """Redirect to the list from which the form was sent."""
     back = typed.get("back", "/")
     return go(back if _LIST.fullmatch(back) else "/")

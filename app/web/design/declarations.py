@@ -39,7 +39,7 @@ class AnalysisLine:
 
     @property
     def boundaries(self) -> list[str]:
-        """Return the possible supports of the loaded end."""
+        """Return the supports that the loaded end may have."""
         return list(dict.fromkeys(name for kind in self.kinds.values() for name in kind.boundaries))
 
 
@@ -57,7 +57,7 @@ Line = TypeVar("Line", AnalysisLine, IterationLine)
 
 
 def errors_of(part: Mapping[str, str], faults: Mapping[str, str]) -> dict[str, tuple[str, str]]:
-    """Return the faults of a refused form by field: the name and the detail of each."""
+    """Return the faults of a refused form by field, each with its name and detail."""
     match part.get("declare") or part.get("add"):
         case "analysis":
             fields, begins = _OF_ANALYSIS, f"models.{part.get('model', '')}.analyses.{part.get('kind', '')}."
@@ -128,7 +128,7 @@ def measures(design: Design, models: Sequence[ModelBlock]) -> Iterator[str]:
 
 
 def change_of(design: Design, typed: Mapping[str, str]) -> Change | None:
-    """Return the merge patch for a form in this module; None for another form."""
+    """Return the merge patch for a form of this module; None for any other form."""
     match typed.get("declare", ""):
         case "analysis":
             name = typed.get("kind", "").strip()  # an analysis is named after its kind
@@ -140,7 +140,7 @@ def change_of(design: Design, typed: Mapping[str, str]) -> Change | None:
 
 
 def _analysis(typed: Mapping[str, str]) -> dict[str, JsonValue]:
-    """Return the options of an analysis; null removes an emptied option."""
+    """Return the options of an analysis; an option that the user emptied is null, which removes it."""
     return {
         name: _value(name, typed.get(name, ""))
         for name in _OF_ANALYSIS

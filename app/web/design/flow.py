@@ -118,7 +118,7 @@ def _count(items: Sequence[_Item]) -> int:
 
 
 def _blocks(network: DesignNetwork) -> list[_Item]:
-    """Return steps, models and the parameters in relations, in columns of which none is empty."""
+    """Return steps, models and the parameters that relations use, in columns; no column is empty."""
     used = {_block(name) for one in network.relations for name in (one.source, one.target)}
     shown = [block for block in network.blocks if block.kind != "parameter" or block.name in used]
     return [_item(block, network.relations) for block in shown]
@@ -145,7 +145,7 @@ def _lanes(network: DesignNetwork) -> list[_Item]:
 
 
 def _wish(item: _Item, places: Mapping[str, float]) -> float:
-    """Return the mean height of the items that drive this one; the top if there are none."""
+    """Return the preferred height of an item: the mean of the items that drive it, or the top."""
     if item.block is None:
         return places.get(item.name, places[_block(item.name)])
     sources = [places.get(one.source, places.get(_block(one.source), 0.0)) for one in item.inputs]
@@ -194,7 +194,7 @@ def _wires(
 
 
 def _forward(points: Sequence[tuple[float, float]]) -> str:
-    """Return the bends of a line between columns, which it crosses straight."""
+    """Return the bends of a line to a later column; it runs straight across the columns between."""
     (x, y), *rest = points
     path = f"M{x:.1f},{y:.1f}"
     for place, (to_x, to_y) in enumerate(rest):

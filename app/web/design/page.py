@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from fastapi import Request, Response
@@ -22,6 +22,7 @@ from app.designs.schemas.designs import (
     Preview,
     Proposal,
     RevisionWorksheet,
+    RoundedValue,
 )
 from app.designs.schemas.solid_fields import SolidField
 from app.designs.schemas.variants import VariantsOut
@@ -75,7 +76,7 @@ from app.web.tolerances.routes import toleranced
 from app.web.variants.detail import chosen_variant
 from app.web.variants.table import RefusedTable, places_of, variants_table
 from app.web.verdict.banner import Banner, banner, opened, with_keys
-from cad.export import MEDIA_TYPES
+from cad.file_kinds import BY_PART, MEDIA_TYPES
 
 UNFINISHED = ("queued", "running")
 QUICK = 1  # longest wait for steps; the page's script requests slower ones and shows their progress [s]
@@ -128,6 +129,7 @@ async def design_page(
         job=await _job(services, design),
         studies=await studies_of(services, id),
         kinds=list(MEDIA_TYPES),
+        by_part=list(BY_PART),
         loose=_loose([*parameters, *_fields(steps, parts)], faults, wrong),
         refused=bool(faults) or table is not None,
         notice=notice,
@@ -191,6 +193,7 @@ async def _form(request: Request, services: PageServices, design: Design, refusa
     before = await _before(request, services, design)
     tables = await library(services) if templates else []
     verdict = _verdict(revision, design, templates)
+    rounded = by_name(revision.rounded)
     bare = blocks = _blocks(revision, design, templates)
     in_full = steps_in_full(request, design.steps, refusal, verdict) if is_long else None
     if in_full is not None:
@@ -202,18 +205,25 @@ async def _form(request: Request, services: PageServices, design: Design, refusa
         revision = revision.model_copy(update={"steps": {**revision.steps, **whole}})
         blocks = [with_result(block, whole.get(block.name)) for block in blocks]
     steps = [
-        with_fields(block, design, refusal, tables) if in_full is None or block.name in in_full else block
+        with_fields(block, design, refusal, tables, rounded)
+        if in_full is None or block.name in in_full
+        else block
         for block in blocks
     ]
     folded = {} if in_full is None else fold_lines(bare, verdict, f"/designs/{id}")
     parts = [
-        with_changes(block, design, refusal, before, preview.model_parameters if preview else {})
+        with_changes(block, design, refusal, before, preview.model_parameters if preview else {}, rounded)
         for block in models_of(revision, models)
     ]
     typed, faults = refusal.typed, refusal.faults
     values = (preview.parameters if preview else None) or {}
-    parameters = sheet.of_parameters(design.parameters, values, typed, faults)
+    parameters = sheet.of_parameters(design.parameters, values, typed, faults, rounded)
     return Form(revision, preview, parameters, steps, folded, parts, models, verdict, in_full)
+
+
+def by_name(rounded: Sequence[RoundedValue]) -> dict[str, RoundedValue]:
+    """Return rounded values by their names."""
+    return {value.name: value for value in rounded}
 
 
 def _as_typed(design: Design) -> str:
@@ -234,14 +244,14 @@ def _blocks(
 
 
 async def _before(request: Request, services: PageServices, design: Design) -> RevisionWorksheet | None:
-    """Return the previous revision, of which the page shows only the parameters of models."""
+    """Return the previous revision; the page shows only its model parameters."""
     if design.revision == 1 or not design.models:
         return None
     return await revision_of(request, services, design.id, design.revision - 1, within=0, has_formulas=False)
 
 
 async def step_section(request: Request, services: PageServices, id: str, name: str) -> Response:
-    """Return the unfolded section of one step, which the script of a long design's page fetches.
+    """Return the unfolded section of one step, which the script of a long design's page requests.
 
     Raises
     ------
@@ -253,7 +263,11 @@ async def step_section(request: Request, services: PageServices, id: str, name: 
     templates = await templates_of(services, {name: steps_of_design(design)[name]})
     blocks = steps_of(revision, templates, {name: design.steps[name].outputs})
     tables = await library(services)
-    steps = with_keys([with_fields(block, design, NO_REFUSAL, tables) for block in blocks], revision, design)
+    steps = with_keys(
+        [with_fields(block, design, NO_REFUSAL, tables, by_name(revision.rounded)) for block in blocks],
+        revision,
+        design,
+    )
     (section,) = sections(steps, banner(revision), name, in_full={name})
     return show(request, "design/section.html", section=section)
 
@@ -274,7 +288,7 @@ async def _analyses(
 async def _fields_of_solids(
     services: PageServices, id: str, measured: Mapping[str, ModelMeasurements]
 ) -> dict[str, list[SolidField]]:
-    """Return the fields that can be painted on each model; empty for a model without analyses."""
+    """Return the fields that can be shown in colour on each model; none for a model without analyses."""
     fields: dict[str, list[SolidField]] = {name: [] for name in measured}
     for name, part in measured.items():
         if part.analyses:
@@ -295,7 +309,7 @@ async def _proposals(services: PageServices, design: Design) -> list[Proposal]:
 def _loose(
     fields: list[sheet.Field], faults: Mapping[str, str], wrong: Mapping[str, tuple[str, str]]
 ) -> dict[str, str]:
-    """Return the faults that belong neither to a field of the worksheet nor to a field of a small form."""
+    """Return the faults that belong to no field of the worksheet or of a small form."""
     shown = {name for name, _ in wrong.values()}
     loose = sheet.loose_faults(fields, faults)
     return {name: detail for name, detail in loose.items() if name not in shown}

@@ -37,6 +37,7 @@ async def step(id: Id, request: Request, services: ThePageServices, name: Text =
 @router.get("/designs/{id}/delete")
 @router.get("/designs/{id}/rename")
 @router.get("/designs/{id}/variants")
+@router.get("/designs/{id}/table")
 @router.get("/designs/{id}/variants/pasted")
 @router.get("/designs/{id}/variants/file")
 @router.get("/designs/{id}/labels")

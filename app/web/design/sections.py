@@ -31,15 +31,15 @@ shows those of a few."""
 
 
 def asked_step(request: Request, steps: Collection[str]) -> str | None:
-    """Return the step in the address, if the design has it."""
+    """Return the step that the address names, if the design has it."""
     name = request.query_params.get("step", "")
     return name if name in steps else None
 
 
 def steps_in_full(request: Request, steps: Collection[str], refusal: Refusal, verdict: Banner) -> set[str]:
-    """Return the steps that a long design's page shows completely.
+    """Return the steps that the page of a long design shows completely.
 
-    They are the step in the address and those of a refused form.
+    They are the step that the address names and the steps of a refused form.
     """
     first = asked_step(request, steps) or opened(list(steps), verdict)
     typed = {name.partition("@" if "@" in name else ".")[0] for name in (*refusal.typed, *refusal.faults)}
@@ -56,7 +56,8 @@ def sections(
 ) -> Iterator[Markup]:
     """Yield the rendered section of every step.
 
-    The section of `opened` is unfolded. With `in_full`, all other steps are `folded`.
+    The section of the step `opened` is unfolded. If `in_full` is given, all steps that it does not name are
+    `folded`.
     """
     worst = verdict.worst_by_step()
     for step in steps:
@@ -68,7 +69,7 @@ def sections(
 
 
 def fold_lines(steps: Sequence[StepBlock], verdict: Banner, base: str) -> dict[str, Markup]:
-    """Return the summary line of every step; the rest is at an address below that of the design, `base`."""
+    """Return the summary line of every step; a script loads the rest from an address below `base`."""
     worst = verdict.worst_by_step()
     return {step.name: _fold_line(step, worst.get(step.name), base) for step in steps}
 
@@ -82,7 +83,7 @@ def banner_of(verdict: Banner, design: str) -> Markup:
 
 
 def variants_start(design: Design, variants: VariantsTable) -> Markup:
-    """Return the table for the first variants of a design, which has a column for each input."""
+    """Return an empty table for a design's first variants, with a column for each input."""
     return _macro("variants/variants.html", "start", design, variants)
 
 
@@ -114,7 +115,7 @@ def _macro(page: str, name: str, *arguments: object) -> Markup:
 
 
 def _shown(step: StepBlock, worst: Line | None, is_open: bool, is_only: bool) -> tuple[object, ...]:
-    """Return all data that a section shows; the digest of the template represents its declarations."""
+    """Return everything that a section shows; the template's digest represents its declarations."""
     template = step.template
     return (
         step.name,

@@ -34,7 +34,7 @@ class SensitivityLine:
 
 
 def sensitivity_lines(items: Sequence[Sensitivity]) -> list[SensitivityLine]:
-    """Return all rows; the longest bar belongs to the largest elasticity."""
+    """Return all lines with their bars; the largest elasticity has the longest bar."""
     largest = max((abs(item.elasticity or 0.0) for item in items), default=0.0)
     return [_line(item, largest) for item in items]
 
@@ -58,5 +58,5 @@ def _bar(elasticity: float, largest: float) -> Bar:
 
 
 def _digits(value: float) -> float:
-    """Return a number with four digits, which is the accuracy of differences."""
+    """Return a number with four digits, which is the accuracy of the differences."""
     return float(f"{value:.4g}")

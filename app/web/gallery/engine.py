@@ -50,7 +50,7 @@ _OUTPUTS: list[JsonValue] = [
 def _bearings(mains: int, cylinders: int) -> dict[str, JsonValue]:
     """Return a variant for every main bearing and every big-end bearing.
 
-    The groove lies in the shell in the block of a main bearing, and in the cap of a big end.
+    The groove of a main bearing is in the shell of the block; that of a big end is in the shell of the cap.
     """
     big_ends: dict[str, JsonValue] = {
         f"big_end_{n}": {
@@ -70,8 +70,8 @@ def _bearings(mains: int, cylinders: int) -> dict[str, JsonValue]:
 def _places(between: str, cylinders: Sequence[float], webs: float) -> dict[str, JsonValue]:
     """Return the positions of cylinders, mains and webs; a wider bore makes the engine longer.
 
-    The length of a throw is the bore plus the distance `between` two bores. The cylinders lie `cylinders`
-    [mm] off the middle of their throw, and the webs `webs` [mm] before and after it.
+    The length of a throw is the bore plus the distance `between` two bores. Each cylinder is offset by
+    `cylinders` [mm] from the middle of its throw, and the webs lie `webs` [mm] before and after that middle.
     """
     middle = [f"= {2 * k + 1} * pitch / 2" for k in range(THROWS)]
     return {

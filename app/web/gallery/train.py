@@ -95,7 +95,7 @@ def analyses() -> dict[str, JsonValue]:
 
 
 def _between(throw: int) -> str:
-    """Return the stiffness from the pin of a throw to that of the next: half of each throw, in series."""
+    """Return the stiffness from the pin of one throw to that of the next: half of each throw, in series."""
     this, following = (f"{STIFFNESS}[{n}]" for n in (throw, throw + 1))
     return f"= 2 * {this} * {following} / ({this} + {following})"
 

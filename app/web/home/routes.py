@@ -25,7 +25,7 @@ TAGS_ON_HOME = 30
 
 @router.get("/")
 async def home(request: Request, services: ThePageServices, template: Search = "") -> Response:
-    """Return the home page: designs, templates, models, and where to start; `template` searches templates."""
+    """Return the home page: designs, templates, models, and first steps; `template` searches templates."""
     designs, tags, templates, models, faulty = await asyncio.gather(
         services.run(list_designs, services.database, limit=ON_HOME),
         services.run(list_tags, services.database),
@@ -55,6 +55,6 @@ async def home(request: Request, services: ThePageServices, template: Search = "
 
 
 async def _picture(services: PageServices, id: str) -> tuple[str, str | None]:
-    """Return a design's id, and the picture of its first part if it already exists."""
+    """Return a design's id, and the picture of its first part if the picture exists already."""
     parts = await services.run(show_measurements, id, services.database)
     return id, next((f"/api/v1/designs/{id}/models/{name}/model.png" for name in parts), None)

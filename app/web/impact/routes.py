@@ -41,7 +41,7 @@ class Line:
 
     @property
     def margin(self) -> str:
-        """Return the largest loss of margin: `0.59 µm of thick (114 %)`."""
+        """Return the largest loss of margin, such as `0.59 µm of thick (114 %)`."""
         lost = self.impact.margin
         if lost is None:
             return ""

@@ -101,7 +101,7 @@ def text_of(column: TableColumn) -> str:
 def _chosen(columns: Sequence[TableColumn], pasted: PastedTable) -> list[ChosenColumn]:
     """Return the user's choice of columns.
 
-    Without a choice, or with that for another table, return the proposal by names.
+    If there is no choice, or it belongs to another table, return the proposal by names.
     """
     if pasted.columns is not None and len(pasted.columns) == len(columns):
         return pasted.columns
@@ -114,7 +114,7 @@ def _chosen(columns: Sequence[TableColumn], pasted: PastedTable) -> list[ChosenC
 
 
 def _proposed(columns: Sequence[TableColumn], fields: Sequence[TableField]) -> list[str]:
-    """Return a field for each column, assigned by best match and each only once; empty if no name fits."""
+    """Return the best matching field for each column, each field only once; none if no name fits."""
     scores = [
         (_likeness(column, field), -place, field.name)
         for place, column in enumerate(columns)
@@ -131,7 +131,7 @@ def _proposed(columns: Sequence[TableColumn], fields: Sequence[TableField]) -> l
 def _alone(
     columns: Sequence[TableColumn], fields: Sequence[TableField], taken: Mapping[int, str]
 ) -> dict[int, str]:
-    """Return the remaining assignments by kind: the only column of a kind gets the only free field."""
+    """Return the assignments that are unique by kind: the only column of a kind gets the only free field."""
     free = [field for field in fields if field.name not in taken.values()]
     left = [n for n, column in enumerate(columns) if n not in taken and column.unit not in ("", "1")]
     fits = {n: [f.name for f in free if compatible(unit(columns[n].unit), unit(f.unit))] for n in left}
@@ -196,7 +196,7 @@ def _said(name: str) -> str:
 def _adjusted(
     columns: list[TableColumn], chosen: Sequence[ChosenColumn], pasted: PastedTable
 ) -> tuple[list[TableColumn], list[str]]:
-    """Return the columns with the offset added to the angles, without a last point equal to the first."""
+    """Return the columns with the offset added to angles, without a last point that repeats the first."""
     fields: Mapping[str, TableField] = {field.name: field for field in pasted.fields}
     taken = [c for o, c in zip(chosen, columns, strict=True) if o.field]
     place = next((n for n, o in enumerate(chosen) if o.field and _is_angle(fields[o.field])), None)
@@ -217,7 +217,7 @@ def _is_angle(field: TableField) -> bool:
 
 
 def _cycle(axis: TableColumn, taken: Sequence[TableColumn]) -> tuple[list[str], bool]:
-    """Return a remark on the last point, and whether it repeats the first one."""
+    """Return a remark about the last point, and whether it repeats the first one."""
     degrees = unit(axis.unit).factor / unit("deg").factor
     span = abs(axis.values[-1] - axis.values[0]) * degrees
     cycle = next((c for c in CYCLES if abs(span - c) <= SAME_ANGLE), None)
@@ -266,7 +266,7 @@ def refused(error: InvalidInputs) -> ReadTable:
 async def read_pasted_table(pasted: PastedTable) -> ReadTable:
     """Return the columns of a pasted table, and the texts for the fields.
 
-    A text that is not a table is not an error: while the user types, the page shows what is wrong.
+    A text that is not a table raises no error, because the page shows its faults while the user types.
     """
     return await run_in_threadpool(_read, pasted)
 

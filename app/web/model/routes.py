@@ -21,11 +21,10 @@ from app.web.shared import sheet
 from app.web.shared.paths import Id, Number
 from app.web.shared.responses import go, show, units_of
 from app.web.shared.services import PageServices, Refused, ThePageServices, refusals
-from cad.export import MEDIA_TYPES
+from cad.file_kinds import MEDIA_TYPES, SHOWN
 from cad.model import CadModel
 from cad.regenerate import build_key
 
-SHOWN = ("step", "glb")  # created at once; other kinds only on request
 ABOUT = {"units"}
 
 
@@ -62,7 +61,7 @@ async def finished_analyses(
     model: Model,
     declared: Mapping[str, ModelAnalysis] | None = None,
 ) -> list[Analysis]:
-    """Return the analyses of a build that have results, under the load of the design if it sets one."""
+    """Return the analyses of a build that have results, under the load that the design sets, if any."""
     if not model.analyses or build is None:
         return []
     units = units_of(request)
@@ -96,12 +95,12 @@ async def _built(
 
 
 async def _begun(services: PageServices, model: Model, cells: Mapping[str, Given]) -> str:
-    """Start the build, wait a moment for it, and return its key.
+    """Start the build, wait a short time for it, and return its key.
 
     Raises
     ------
     Refused
-        If the parameters are wrong, or give no sound solid.
+        If the parameters are wrong, or do not give a valid solid.
     """
     with refusals():
         AUTHOR.check()

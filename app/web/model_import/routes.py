@@ -54,7 +54,7 @@ forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_with_file
 async def model_import_form(
     request: Request, services: ThePageServices, job: Text = "", id: Text = ""
 ) -> Response:
-    """Return the form for a file; while its job runs, its progress; then the model or the refusal."""
+    """Return the form for a file, the progress of its job, or the resulting model or refusal."""
     return await FORM.show(request, services, job, id)
 
 

@@ -45,7 +45,7 @@ class NewStep:
         return any([*self._tails(".").values(), *self._limits().values()])
 
     def plain(self) -> dict[str, JsonValue]:
-        """Return the step in the form that the interface accepts."""
+        """Return the step as the interface accepts it."""
         step: dict[str, JsonValue] = {"template": self.template.id, "version": self.template.version}
         step["inputs"] = {tail: value_of(text) for tail, text in self._tails(".").items() if text}
         if limits := {tail: value_of(text) for tail, text in self._limits().items() if text}:
@@ -71,7 +71,7 @@ class NewStep:
         return self._tails(f"@{LIMITS}")
 
     def _tails(self, sign: str) -> dict[str, str]:
-        """Return the typed texts by the part of the control's name after a sign."""
+        """Return the typed texts, by the part of the control's name that follows a sign."""
         begins = f"{self.name}{sign}"
         return {
             key.removeprefix(begins): text.strip()
@@ -81,7 +81,7 @@ class NewStep:
 
 
 async def new_step(services: PageServices, typed: Mapping[str, str]) -> NewStep:
-    """Return the step that a form describes; without a name it has that of its template."""
+    """Return the step that a form describes; an unnamed step gets the name of its template."""
     id, version = versioned(typed.get("template", ""))
     number = services.read(Number, version)
     template = await services.run(show_template, id, number, services.catalogues)
@@ -95,7 +95,7 @@ def versioned(chosen: str) -> tuple[str, int | str]:
 
 
 def beside(typed: Mapping[str, str]) -> dict[str, str]:
-    """Return the texts of a form apart from the values of the step."""
+    """Return the texts of a form that are not values of the step."""
     return {name: typed[name] for name in FIELDS if typed.get(name)}
 
 

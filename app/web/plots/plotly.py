@@ -26,7 +26,7 @@ def script() -> bytes:
 
 @cache
 def tag() -> str:
-    """Return a text that identifies the version of the file."""
+    """Return a text that identifies the file's version."""
     return f'"plotly-{version("plotly")}"'
 
 

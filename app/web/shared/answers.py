@@ -51,7 +51,7 @@ async def calculated(
     kind: type[Kind],
     within: float,
 ) -> AnswerOrJob[Kind]:
-    """Return the answer about a template, or the job if the calculation takes longer than this time [s].
+    """Return the answer about a template, or the job if the calculation takes longer than the given time [s].
 
     Raises
     ------

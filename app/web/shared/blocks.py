@@ -16,6 +16,7 @@ from app.designs.schemas.designs import (
     Revision,
     RevisionModel,
     RevisionWorksheet,
+    RoundedValue,
 )
 from app.reports.pictures import Picture, pictures
 from app.schemas.answers import Shown
@@ -43,7 +44,7 @@ class StepBlock:
 
     @property
     def main(self) -> list[str]:
-        """Return the results shown at first: all if they are few, else those that no formula uses."""
+        """Return the results shown first: all if they are few, otherwise those that no formula uses."""
         if len(self.outputs) <= MOST_AT_ONCE:
             return self.outputs
         used = {name for formula in self.template.formulas for name in formula.uses}
@@ -79,7 +80,7 @@ class ModelBlock:
 
     @property
     def targets(self) -> set[str]:
-        """Return the names of the model's parameters in a design."""
+        """Return the names that the model's parameters have in the design."""
         return {f"{self.name}.{tail}" for tail in properties(self.model.parameters)}
 
 
@@ -100,7 +101,10 @@ def steps_of(
     templates: Mapping[str, Template],
     computed: Mapping[str, Sequence[str] | None] | None = None,
 ) -> list[StepBlock]:
-    """Return every step with its results and pictures; `computed` names outputs if only some are."""
+    """Return every step with its results and pictures.
+
+    If only some outputs are computed, `computed` names them.
+    """
     return [
         _step(name, template, revision.steps[name], (computed or {}).get(name))
         for name, template in templates.items()
@@ -122,14 +126,18 @@ def _with_places(step: PreviewedStep, names: Iterable[str]) -> PreviewedStep:
 
 
 def with_result(block: StepBlock, written: PreviewedStep | None) -> StepBlock:
-    """Return a step with its formulas if they are `written` out; a step without results yet has none."""
+    """Return a step with its results, and with its formulas if they are `written` out."""
     return block if written is None or written.pending else replace(block, result=written)
 
 
 def with_fields(
-    block: StepBlock, design: Design, refusal: Refusal, tables: Sequence[LibraryTable]
+    block: StepBlock,
+    design: Design,
+    refusal: Refusal,
+    tables: Sequence[LibraryTable],
+    rounded: Mapping[str, RoundedValue],
 ) -> StepBlock:
-    """Return a step of a design with the fields of its form; `tables` are those of the library."""
+    """Return a step of a design with the fields of its form; `tables` are the tables of the library."""
     step, template, result = design.steps[block.name], block.template, block.result
     used = {} if result.pending or not result.outputs else result.inputs
     typed, faults = refusal.typed, refusal.faults
@@ -137,7 +145,7 @@ def with_fields(
     return replace(
         block,
         fields=with_rows(
-            sheet.of_block(template.inputs, block.name, step.inputs, used, typed, faults), tables
+            sheet.of_block(template.inputs, block.name, step.inputs, used, typed, faults, rounded), tables
         ),
         options=sheet.of_options(template, block.name, chosen, typed, faults),
         limits=limit_fields(template, block.name, step.limits, typed, faults, tables),
@@ -155,6 +163,7 @@ def with_changes(
     refusal: Refusal,
     before: Revision | None,
     previewed: Mapping[str, ParameterChange],
+    rounded: Mapping[str, RoundedValue],
 ) -> ModelBlock:
     """Return a model of a design with the fields of its form, and its changes since the previous revision."""
     name, values, schema = block.name, block.values, block.model.parameters
@@ -162,7 +171,7 @@ def with_changes(
     status = {tail: _status(previewed.get(f"{name}.{tail}")) for tail in values}
     return replace(
         block,
-        fields=sheet.of_block(schema, name, cells, values, refusal.typed, refusal.faults),
+        fields=sheet.of_block(schema, name, cells, values, refusal.typed, refusal.faults, rounded),
         old=_changed(before.models.get(name) if before else None, values),
         status=status or dict.fromkeys(required(schema), "missing"),
     )
@@ -179,7 +188,7 @@ def _changed(before: RevisionModel | None, values: Mapping[str, Shown]) -> dict[
 
 
 def painted(steps: Iterable[StepBlock], models: Sequence[ModelBlock]) -> dict[str, object] | None:
-    """Return the film pressure to paint on a plain bearing.
+    """Return the film pressure to show in colour on a plain bearing.
 
     It is the pressure of the step whose bearing diameter drives the bore.
     """

@@ -29,7 +29,7 @@ async def revision_of(
     only: str | None = None,
     has_formulas: bool = True,
 ) -> RevisionWorksheet:
-    """Return a revision as a worksheet, in the units of the page; with `only`, just that step."""
+    """Return a revision as a worksheet, in the units of the page; `only` restricts it to one step."""
     units = units_of(request)
     return await services.calculate(within, services.reports.worksheet, id, number, units, only, has_formulas)
 
@@ -45,7 +45,7 @@ def steps_of_design(design: Design) -> dict[str, tuple[str, int]]:
 
 
 async def templates_of(services: PageServices, steps: Mapping[str, tuple[str, int]]) -> dict[str, Template]:
-    """Return the template of every step; steps of one version share it."""
+    """Return the template of every step; steps with the same version share one object."""
     versions = {
         (id, version): await services.run(show_template, id, version, services.catalogues)
         for id, version in dict.fromkeys(steps.values())
@@ -54,7 +54,7 @@ async def templates_of(services: PageServices, steps: Mapping[str, tuple[str, in
 
 
 async def described_models(services: PageServices, design: Design | RevisionWorksheet) -> dict[str, CadModel]:
-    """Return the description of every model; models of one version share it."""
+    """Return the description of every model; models with the same version share one object."""
     places = {name: (model.id, model.version) for name, model in design.models.items()}
     versions = {
         (id, version): await services.run(show_model, id, version, services.catalogues, services.database)
@@ -74,7 +74,7 @@ class Upgrade(NamedTuple):
 
 
 async def upgrades_of(services: PageServices, templates: Mapping[str, Template]) -> list[Upgrade]:
-    """Return the steps of a design that do not use the latest version, by name, with their templates."""
+    """Return, by name, the steps of a design that do not use the latest version, with their templates."""
     old = {name: template for name, template in templates.items() if not template.latest}
     newest = {id: await _newest(services, id) for id in {template.id for template in old.values()}}
     return [

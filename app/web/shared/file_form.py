@@ -61,7 +61,7 @@ class FileForm:
     context: Callable[[PageServices], Awaitable[dict[str, object]]] = _nothing
 
     async def show(self, request: Request, services: PageServices, job: str, id: str) -> Response:
-        """Return the form for a file; while its job runs, the progress; then the result or the refusal."""
+        """Return the form for a file, the progress of its job, or the result or refusal."""
         if not _JOB.fullmatch(job):
             return await self._form(request, services, id)
         work = await job_of(services, job)

@@ -56,7 +56,7 @@ async def fields(request: Request) -> dict[str, str]:
     Raises
     ------
     BodyTooLarge
-        If there are more fields than in any form of the service.
+        If there are more fields than any form of the service has.
     """
     body = (await request.body()).decode(errors="replace")
     try:
@@ -66,7 +66,7 @@ async def fields(request: Request) -> dict[str, str]:
 
 
 async def forms_only(request: Request) -> None:
-    """Accept only bodies that are forms; within a session, only forms from its own pages."""
+    """Accept only bodies that are forms, and within a session only forms from its own pages."""
     check_type(request, FORM_TYPES, NotForm)
     if request.scope.get(FORM_TOKEN):
         check_form_token(request, await fields(request))
@@ -83,7 +83,7 @@ def patch_of(design: Names, typed: Mapping[str, str]) -> Patch:
 
 
 def kept(typed: Mapping[str, str]) -> dict[str, str]:
-    """Return the fields that differ from the initial state of the form, stored in its hidden field `was`."""
+    """Return the fields that differ from the form's initial state, which its hidden field `was` stores."""
     try:
         old = _WAS.validate_json(typed.get("was", "{}"))
     except ValueError:
@@ -99,14 +99,14 @@ def _is_field(design: Names, blocks: Set[str], name: str) -> bool:
 
 
 def _parts(name: str) -> tuple[str, str, str]:
-    """Return the block, `.` or `@`, and the rest of a control's name."""
+    """Return the block of a control's name, the sign `.` or `@`, and the rest."""
     return name.partition("@" if "@" in name else ".")
 
 
 def texts(design: Design) -> dict[str, str]:
     """Return the texts of a design by control.
 
-    Controls are named like `.scale`, `film.radial_load`, `film@level` and `model.width`.
+    Names of controls are, for example, `.scale`, `film.radial_load`, `film@level` and `model.width`.
     """
     blocks = {name: step.inputs for name, step in design.steps.items()}
     blocks |= {name: model.parameters for name, model in design.models.items()}
@@ -120,7 +120,7 @@ def texts(design: Design) -> dict[str, str]:
 
 
 def _put(patch: Patch, design: Names, name: str, value: JsonValue) -> None:
-    """Store one value in its place, or remove it if the field was emptied."""
+    """Store one value at its place, or remove the value if the user emptied the field."""
     block, kind, tail = _parts(name)
     new = None if value == "" else value
     if kind == "@" and tail.startswith(LIMITS):
@@ -136,7 +136,7 @@ def _put(patch: Patch, design: Names, name: str, value: JsonValue) -> None:
 
 
 def inner(outer: dict[str, JsonValue], name: str) -> dict[str, JsonValue]:
-    """Return the object under a name; an empty one if there is none yet."""
+    """Return the object under a name; create an empty one if there is none yet."""
     inner = outer.setdefault(name, {})
     assert isinstance(inner, dict)
     return inner

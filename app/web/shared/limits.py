@@ -60,7 +60,7 @@ def limit_fields(
 
 
 def _field(name: str, control: str, declared: DeclaredValue) -> Field:
-    """Return an empty field; its hint shows the value that applies while it is empty."""
+    """Return an empty field, whose hint shows the value that applies if the field stays empty."""
     default = declared.default_formula or "not given"
     return Field(
         name=name,
@@ -69,7 +69,7 @@ def _field(name: str, control: str, declared: DeclaredValue) -> Field:
         text="",
         error=None,
         unit=declared.unit,
-        hint="by the row above" if declared.filled_by else default,
+        hint="from the material" if declared.filled_by else default,
         needed=False,
     )
 
@@ -92,7 +92,7 @@ def with_rows(fields: Sequence[Field], tables: Sequence[LibraryTable]) -> list[F
 
 
 def _tail(name: str) -> str:
-    """Return the name of an input without that of its step."""
+    """Return the name of an input without the name of its step."""
     return Reference.parse(name).own_name
 
 

@@ -49,7 +49,7 @@ async def forms_with_files(request: Request) -> None:
 
 
 async def parts_of(request: Request) -> dict[str, Part]:
-    """Return the parts of a form that was sent with a file; empty for a form without files."""
+    """Return the parts of a form that was sent with a file; none for a form without files."""
     return read_parts(await request.body(), request.headers.get("content-type", ""))
 
 

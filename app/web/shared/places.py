@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import inf
 
+from app.designs.analyses import is_table
 from app.designs.schemas.designs import Design, ModelMeasurements, Preview, RevisionWorksheet
 from app.designs.schemas.network import DesignNetwork, NetworkName
 from app.presentation import numbers
@@ -39,9 +40,9 @@ def varied(design: Design, network: DesignNetwork) -> list[PlaceOption]:
 def set_aside(
     design: Design, network: DesignNetwork, own: list[PlaceOption], values: Mapping[str, object]
 ) -> list[PlaceOption]:
-    """Return parameters and inputs that a relation sets, and whose relation a study may replace.
+    """Return parameters and inputs that a relation sets and whose relation a study may replace.
 
-    `own` are the parameters and inputs with values of their own.
+    `own` are the parameters and inputs that have typed values.
     """
     typed, single = dict(_typed(design)), {place.name for place in own}
     return [
@@ -96,6 +97,12 @@ def outputs(network: DesignNetwork) -> list[NetworkName]:
     return [name for name in network.names if name.role == "output"]
 
 
+def measured(network: DesignNetwork) -> list[NetworkName]:
+    """Return the single measures of all solids, and the single outputs of their analyses."""
+    names = (name for name in network.names if name.role == "measure")
+    return [name for name in names if not is_table(Reference.parse(name.name))]
+
+
 def suggested(place: PlaceOption) -> tuple[str, str]:
     """Return suggested bounds: half and twice the value, or nothing if that is not useful."""
     low, high = (times(place.value, factor) for factor in (0.5, 2.0))
@@ -103,7 +110,7 @@ def suggested(place: PlaceOption) -> tuple[str, str]:
 
 
 def times(text: str, factor: float) -> str:
-    """Return a typed positive quantity multiplied by a factor; empty for other texts and for temperatures."""
+    """Return a typed positive quantity times a factor; an empty text for other texts and for temperatures."""
     number, _, symbol = text.partition(" ")
     try:
         value = float(number)

@@ -31,7 +31,7 @@ def install(app: FastAPI) -> None:
 
 
 def _page_or(others: Handler) -> Handler:
-    """Return a handler that sends a page to browsers, and calls another handler for other clients."""
+    """Return a handler that sends a page to browsers and calls another handler for other clients."""
 
     async def handle(request: Request, error: Exception) -> Response:
         if not _is_page(request):

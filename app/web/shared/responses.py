@@ -33,7 +33,7 @@ jinja.globals["axis_of"] = axis_of
 
 
 def units_of(request: Request) -> System:
-    """Return the system of units in the address, else in the cookie, else SI."""
+    """Return the system of units that the address names, otherwise that of the cookie, otherwise SI."""
     asked = request.query_params.get("units") or request.cookies.get("units")
     return next((system for system in get_args(System) if system == asked), "si")
 
@@ -59,13 +59,13 @@ def show(request: Request, name: str, status: int = 200, **context: object) -> R
 
 
 def _scheme(request: Request) -> str:
-    """Return the chosen colour scheme; empty for the system's scheme."""
+    """Return the chosen colour scheme; an empty text selects the system's scheme."""
     kept = request.cookies.get("scheme")
     return next((scheme for scheme in SCHEMES if scheme == kept), "")
 
 
 def _beside_units(request: Request) -> str:
-    """Return the query without its units, so that other units can be appended."""
+    """Return the query without `units`, so that another system of units can be appended."""
     rest = [(name, text) for name, text in request.query_params.multi_items() if name != "units"]
     return f"{urlencode(rest)}&" if rest else ""
 

@@ -43,7 +43,7 @@ ERRORS = tuple(TABLE)
 
 
 def with_related(detail: str, also: list[str]) -> str:
-    """Return the sentence of a fault, with the other inputs that it concerns, as `shared/api.js` does."""
+    """Return the sentence of a fault and the other inputs that it concerns, as `shared/api.js` does."""
     return f"{detail}. See also {', '.join(also)}" if also else detail
 
 
@@ -119,7 +119,7 @@ class PageServices(Services):
         Raises
         ------
         Refused
-            If it refuses.
+            If a service refuses.
         """
         with refusals():
             return await run_in_threadpool(function, *arguments, **options)
@@ -130,7 +130,7 @@ class PageServices(Services):
         Raises
         ------
         Refused
-            If it refuses.
+            If the service refuses.
         """
         with refusals():
             return await answer
@@ -141,7 +141,7 @@ class PageServices(Services):
         *arguments: Arguments.args,
         **options: Arguments.kwargs,
     ) -> SaveResult:
-        """Wait a moment for the job of a save, and return the saved state; the page shows the progress.
+        """Wait a short time for the job of a save, and return the saved state; the page shows the progress.
 
         Raises
         ------
@@ -156,7 +156,7 @@ class PageServices(Services):
     async def change(
         self, id: str, revision: str, patch: Mapping[str, JsonValue], note: str = ""
     ) -> SaveResult:
-        """Save a merge patch of a design at a revision, given as the text in a form.
+        """Save a merge patch of a design, based on the revision whose number the form contains.
 
         Raises
         ------
@@ -188,7 +188,7 @@ class PageServices(Services):
         *arguments: Arguments.args,
         **options: Arguments.kwargs,
     ) -> Result | None:
-        """Return the result of a function, or None if it finds nothing."""
+        """Return the result of a function, or None if the function finds nothing."""
         try:
             return await self.run(function, *arguments, **options)
         except Refused as refused:
@@ -203,14 +203,14 @@ class PageServices(Services):
         *arguments: Arguments.args,
         **options: Arguments.kwargs,
     ) -> Result:
-        """Return the result of a function that evaluates steps; steps that take longer [s] are deferred.
+        """Return the result of a function that evaluates steps, deferring steps that take longer [s].
 
-        Without a time no step is deferred.
+        If no time is given, no step is deferred.
 
         Raises
         ------
         Refused
-            If it refuses.
+            If a service refuses.
         """
         await expensive_steps(self.request, self.client)
         with refusals():

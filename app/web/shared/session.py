@@ -36,7 +36,7 @@ def keep_session(request: Request, response: Response) -> None:
 
 
 def who_signed_in(request: Request) -> str:
-    """Return the name of the principal of the session or key; empty without either."""
+    """Return the name of the principal of the session or key; an empty text if there is neither."""
     who = request.scope.get(PRINCIPAL, ANONYMOUS)
     return "" if who is ANONYMOUS else str(who.name)
 
@@ -61,7 +61,7 @@ def check_form_token(request: Request, typed: dict[str, str]) -> None:
 
 
 def keep_signed_in(request: Request, response: Response, token: str, hours: float) -> None:
-    """Set the cookie of a signed-in session in a browser, valid for a time [h]."""
+    """Set the cookie of a signed-in session, valid for a time [h]."""
     response.set_cookie(
         SIGN_IN,
         token,

@@ -68,5 +68,5 @@ async def come_back(
 
 
 def _address(request: Request) -> str:
-    """Return the callback address, with the host name that the browser uses for the service."""
+    """Return the callback address, with the host name by which the browser reaches the service."""
     return f"{request.url.scheme}://{request.url.netloc}{PLACE}/back"

@@ -50,7 +50,7 @@ async def sign_in(request: Request, identity: TheIdentity) -> Response:
 
 
 def begun(request: Request, token: str, back: str) -> Response:
-    """Redirect to a page with the cookie of a new session."""
+    """Redirect to a page and set the cookie of a new session."""
     response = go(own(back))
     keep_signed_in(request, response, token, services_of(request).settings.session_hours)
     return response

@@ -48,7 +48,7 @@ class SolveForm:
 
     @classmethod
     def of(cls, request: Request) -> SolveForm:
-        """Return the form with the texts in the address."""
+        """Return the form, filled with the texts in the address."""
         return cls({name: request.query_params.get(name, "").strip()[:200] for name in FIELDS})
 
     @property
@@ -70,13 +70,13 @@ class SolveForm:
         return body | ({"tolerance": _number(typed["tolerance"])} if typed["tolerance"] else {})
 
     def wider(self) -> Wider | None:
-        """Return the form with wider bounds, if the bounds can be multiplied."""
+        """Return the form with wider bounds, if its bounds can be multiplied."""
         low, high = times(self.typed["low"], 1 / WIDER), times(self.typed["high"], WIDER)
         query = urlencode({**self.typed, "low": low, "high": high})
         return Wider(low, high, query) if low and high else None
 
     def saved_beside(self) -> tuple[str, str] | None:
-        """Return the field of the design's form for the other value, with that value."""
+        """Return the design's field for the second replaced value, with that value; None if there is none."""
         return (_control(self.typed["other"]), self.typed["other_value"]) if self.typed["other"] else None
 
 
@@ -115,7 +115,7 @@ async def solve_page(request: Request, services: PageServices, id: str) -> Respo
 async def _solved(
     request: Request, services: PageServices, id: str, question: SolveForm
 ) -> AnswerOrJob[DesignSolution]:
-    """Return the solution, or the job that calculates it if the page does not wait so long."""
+    """Return the solution, or the job that calculates it if it takes longer than the page waits."""
     body = services.read(SolveDesignIn, question.body())
     wanted = questions.DesignQuestion(
         id, body.model_dump_json(exclude_unset=True, by_alias=True), units=units_of(request)
@@ -149,7 +149,7 @@ def _level(curve: TracedCurve, levels: Mapping[str, str | None], others: Mapping
 
 
 def _with_bounds(asked: SolveForm, places: list[PlaceOption]) -> SolveForm:
-    """Return the form; if a value was chosen without bounds, with half and twice that value as bounds."""
+    """Return the form; if a value was chosen without bounds, half and twice that value become the bounds."""
     chosen = next((place for place in places if place.name == asked.typed["unknown"]), None)
     if chosen is None or asked.typed["low"] or asked.typed["high"]:
         return asked
@@ -170,13 +170,13 @@ COUNTED = {"met": "met", "not_checked": "not checked"}
 
 
 def _words(root: DesignRoot, name: str) -> str:
-    """Return the verdict of a criterion at a root in words, and whether its error is unknown."""
+    """Return the verdict on a criterion at a root in words, and whether its error is unknown."""
     words = WORDS[root.verdicts[name]]
     return f"{words}; {UNKNOWN}" if name in root.error_unknown else words
 
 
 def _counted(root: DesignRoot) -> str:
-    """Return how many of the other criteria are met (with or without known errors) and not checked."""
+    """Return the numbers of other criteria that are met, met with unknown error, and not checked."""
     counts = Counter[str](root.verdicts.values())
     unknown = sum(root.verdicts[name] == "met" for name in root.error_unknown)
     words = [f"{counts[word]} {words}" for word, words in COUNTED.items() if counts[word]]
@@ -189,6 +189,7 @@ class SavedRoot(ShownRoot):
 
     open: list[tuple[str, str, str]]  # criteria that are not met or undecided, with verdict and its words
     rest: str  # how many are met, and not checked
+    rounded: str  # the target with the chosen values; empty if nothing is rounded
     field: str
     note: str
 
@@ -207,6 +208,7 @@ def _saved(design: Design, solution: DesignSolution) -> list[SavedRoot]:
             **vars(ShownRoot.of(root)),
             open=sorted((n, v, _words(root, n)) for n, v in root.verdicts.items() if v in OPEN),
             rest=_counted(root),
+            rounded=f"{numbers.in_line(root.rounded)} with the chosen values" if root.rounded else "",
             field=control,
             note=f"solved for {target}",
         )

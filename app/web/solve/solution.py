@@ -57,7 +57,7 @@ class Drawing:
     finer_levels: Sequence[str]
 
     def is_sparse(self, finer: TracedCurve) -> bool:
-        """Return whether a finer curve has fewer points than the one that was searched."""
+        """Return whether the finer curve has fewer points than the searched one."""
         return len(finer.x.value) < len(self.curve.x.value)
 
     def caption(self) -> str:
@@ -95,7 +95,7 @@ class Drawing:
 
 
 def in_words(level: str | None) -> str:
-    """Return a level as a page shows it."""
+    """Return the text by which a page shows a level."""
     return (level or "").replace("_", " ")
 
 

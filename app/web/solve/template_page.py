@@ -41,7 +41,7 @@ class Question:
 
     @classmethod
     def of(cls, request: Request) -> Question:
-        """Return the form with the texts in the address."""
+        """Return the form, filled with the texts in the address."""
         query = typed_in(request)
         inputs = {name: text for name, text in query.items() if not name.startswith(MARK)}
         return cls({name: query.get(f"{MARK}{name}", "").strip()[:200] for name in FIELDS}, inputs)
@@ -64,7 +64,7 @@ class Question:
         }
 
     def present(self, template: Template) -> dict[str, str]:
-        """Return the inputs as texts."""
+        """Return the present values of the inputs as texts."""
         return {name: text_of(value) for name, value in self._given(template)[0].items()}
 
     def _given(self, template: Template) -> tuple[dict[str, JsonValue], dict[str, JsonValue]]:
@@ -72,7 +72,7 @@ class Question:
         return inputs, options
 
     def with_bounds(self, places: list[PlaceOption]) -> Question:
-        """Return the form; if an input was chosen without bounds, with half and twice its value as bounds."""
+        """Return the form; an input chosen without bounds gets half and twice its value as bounds."""
         chosen = next((place for place in places if place.name == self.typed["unknown"]), None)
         if chosen is None or self.typed["low"] or self.typed["high"]:
             return self
@@ -122,7 +122,7 @@ async def template_solve_page(request: Request, services: PageServices, id: str,
 
 
 async def _solved(services: PageServices, template: Template, question: Question) -> AnswerOrJob[Solution]:
-    """Return the solution, or the job that calculates it if the page does not wait so long."""
+    """Return the solution, or the job that calculates it if it takes longer than the page waits."""
     body = services.read(SolveIn, question.body(template))
     asked = TemplateQuestion(template.id, template.version, "solve", body)
     return await calculated(services, asked, _seconds, Solution, PATIENCE)

@@ -18,7 +18,7 @@ from app.presentation.input_text import text_of, value_of
 from app.reference import Reference
 from app.schemas.criteria import Criterion
 from app.studies.schemas import StudyEstimate
-from app.web.shared.places import outputs, present, set_aside, suggested, varied
+from app.web.shared.places import measured, outputs, present, set_aside, suggested, varied
 from app.web.shared.responses import show
 from app.web.shared.services import PageServices, Refused
 
@@ -47,12 +47,12 @@ class StudyForm:
         return self.fields.get(name, default)
 
     def wrong(self, *names: str) -> list[str]:
-        """Return the faults of these members of a study, or of their parts."""
+        """Return the faults of the given members of a study, or of their parts."""
         heads = tuple(f"{name}." for name in names if name)
         return [detail for name, detail in self.faults.items() if name in names or name.startswith(heads)]
 
     def wrong_in(self, line: int) -> list[str]:
-        """Return the faults of the varied value in a line."""
+        """Return the faults of the varied value in one line of the form."""
         place = self.text(f"place.{line}")
         return self.wrong(place, f"vary.{place}") if place else self.wrong("vary") if line == 0 else []
 
@@ -161,7 +161,7 @@ async def study_form(
             inf, services.previews.in_parts, PreviewRequest(id, {}, False, "si"), services.client
         )
     )[0]
-    places, named = varied(design, network), outputs(network)
+    places, named = varied(design, network), [*outputs(network), *measured(network)]
     aside = set_aside(design, network, places, present(revision, preview))
     bounds = {place.name: suggested(place) for place in (*places, *aside)}
     return show(
@@ -205,14 +205,14 @@ def has_limit(criterion: Criterion) -> bool:
 
 
 def _judged(revision: RevisionWorksheet, named: list[NetworkName]) -> set[str]:
-    """Return the outputs in criteria with limits, which a study keeps by default."""
+    """Return the outputs that criteria with limits judge; a study stores them by default."""
     limited = filter(has_limit, revision.criteria or ())
     words = {word for one in limited for word in _words(one.name, one.require)}
     return {name.name for name in named if name.name in words}
 
 
 def _by_step(named: list[NetworkName]) -> dict[str, list[NetworkName]]:
-    """Return outputs by step, in the order of the design."""
+    """Return outputs and measures by step and model, in the order of the design."""
     groups: dict[str, list[NetworkName]] = {}
     for name in named:
         groups.setdefault(Reference.parse(name.name).block, []).append(name)
@@ -220,7 +220,7 @@ def _by_step(named: list[NetworkName]) -> dict[str, list[NetworkName]]:
 
 
 def _words(criterion: str, require: str) -> set[str]:
-    """Return the names in a criterion, with the step in front if it belongs to a template."""
+    """Return the names that a criterion uses, prefixed with the step if it belongs to a template."""
     name = Reference.parse(criterion)
     bare = require.replace(">=", " ").replace("<=", " ").split()
     return {f"{name.block}.{word}" if name.output else word for word in bare}

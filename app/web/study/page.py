@@ -86,7 +86,7 @@ def _limits(study: Study, criteria: list[Criterion]) -> dict[str, list[float]]:
 
 
 def _sides(one: Criterion) -> tuple[str, str]:
-    """Return the output that a criterion judges, with its step in front, and the text of the limit."""
+    """Return the output that a criterion judges, prefixed with its step, and the text of the limit."""
     left, _, right = (side.strip() for side in one.require.replace(">=", "<=").partition("<="))
     name = Reference.parse(one.name)
     return f"{name.block}.{left}" if name.output and left.isidentifier() else left, right

@@ -44,7 +44,7 @@ class _MeasuredErrors(BaseModel):
 
 
 def table(measured: Accuracy) -> Table:
-    """Return the levels in an answer of `GET …/accuracy`, with the outputs that were measured."""
+    """Return the levels in an answer of `GET …/accuracy`, with the outputs whose errors were measured."""
     levels = [_level(name, _MeasuredErrors.model_validate(level)) for name, level in measured.levels.items()]
     outputs = list(dict.fromkeys(name for level in levels for name in level.errors))
     return Table(levels, outputs[:SHOWN])

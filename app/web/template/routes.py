@@ -32,7 +32,7 @@ PATIENCE = 2.0  # longest wait of the page for an answer [s]; then it shows the 
 
 
 async def template_page(request: Request, services: PageServices, id: str, version: int) -> Response:
-    """Return the page with the results for the inputs in the address, or for the example without inputs."""
+    """Return the page with results for the inputs in the address, or for the example if there are none."""
     template = await services.run(show_template, id, version, services.catalogues)
     typed = typed_in(request)
     inputs, chosen, limits = inputs_of(template, typed)

@@ -34,7 +34,7 @@ class Line:
     histogram: str
 
     def quantity(self, value: float | None) -> Quantity | None:
-        """Return a number of the output with its unit."""
+        """Return a number in the output's unit as a quantity."""
         return None if value is None else Quantity(value=value, unit=self.output.unit)
 
     @property
@@ -58,10 +58,7 @@ def toleranced(design: Design) -> bool:
 async def tolerances_page(
     request: Request, services: PageServices, id: str, job: str | None, *, is_part: bool
 ) -> Response:
-    """Return the analysis of the newest revision, or of a finished job.
-
-    It is returned as a page, or as a part of the design's page.
-    """
+    """Return the page with the analysis of the newest revision or of a finished job, or its main part."""
     design = await services.run(services.designs.show, id)
     template = "tolerances/tolerances_part.html" if is_part else "tolerances/tolerances_page.html"
     try:
@@ -104,7 +101,7 @@ def _marks(output: OutputScatter) -> Iterator[bars.Mark]:
 
 
 def _near(one: Yield, edges: list[float]) -> bool:
-    """Return whether a limit is near enough to be shown without compressing the histogram."""
+    """Return whether a limit is close enough to be shown without compressing the histogram."""
     assert one.limit is not None
     width = edges[-1] - edges[0]
     return edges[0] - width <= one.limit <= edges[-1] + width

@@ -50,7 +50,7 @@ async def upgrade_page(
 
 @forms.post("/designs/{id}/upgrade")
 async def upgrade(id: Id, request: Request, services: ThePageServices) -> Response:
-    """Create a revision with the version; if it is refused, return the preview with the reason."""
+    """Create a revision with the new version; if it is refused, return the preview with the reason."""
     typed = await fields(request)
     template, version = typed.get("template", ""), typed.get("version", "")
     design = await services.run(services.designs.show, id)
@@ -80,7 +80,7 @@ def _number(template: str, version: str) -> int:
 
 
 def _patch(design: Design, template: str, version: int) -> Patch:
-    """Return the merge patch that gives every step of a template the version, without changing its inputs."""
+    """Return the merge patch that changes the version of every step of a template but not its inputs."""
     steps = design.steps.items()
     return {"steps": {name: {"version": version} for name, step in steps if step.template == template}}
 
@@ -134,7 +134,7 @@ async def _page(
 
 
 def _moved(preview: Preview) -> list[ValueChange]:
-    """Return the outputs of both versions that differ."""
+    """Return the outputs whose values differ between the two versions."""
     both = {name: (one.old, one.new) for name, one in preview.outputs.items() if one.old and one.new}
     rows = [
         ValueChange(name, _in_unit_of(old, new), numbers.in_line(new)) for name, (old, new) in both.items()

@@ -30,7 +30,7 @@ class CsvFile:
     columns: Mapping[int, int]  # column of the page, by column of the file
 
     def on_page(self, fault: Fault) -> Fault:
-        """Return a fault with the cell's address on the page."""
+        """Return a fault with the address that its cell has on the page."""
         match = _ADDRESS.fullmatch(fault.name)
         if match is None or (column := column_of(match[1])) not in self.columns:
             return fault
@@ -65,7 +65,7 @@ def with_units(grid: Grid, units: Mapping[str, str]) -> Grid:
 
 
 def _declared(grid: Grid, at: int, units: Mapping[str, str]) -> str:
-    """Return the declared unit of the value that a column is for."""
+    """Return the declared unit of the value that a column contains."""
     return units.get(place_named(grid.cell(0, at), units), "")
 
 
@@ -91,12 +91,12 @@ def _is_relation(grid: Grid, row: int, at: int) -> bool:
 
 
 def _own(grid: Grid, row: int, at: int, related: Collection[int]) -> str:
-    """Return a cell for the page's own column; empty for a relation."""
+    """Return the part of a cell that belongs in the page's column itself; empty for a relation."""
     return "" if at in related and _is_relation(grid, row, at) else grid.cell(row, at)
 
 
 def _relation(grid: Grid, row: int, at: int) -> str:
-    """Return a cell for the column of relations that belongs to column `at` of the page."""
+    """Return the part of a cell that belongs in the column of relations for column `at` of the page."""
     if row == 0:
         return f"{grid.cell(0, at)} {RELATION}"
     return grid.cell(row, at).removeprefix("=").strip() if _is_relation(grid, row, at) else ""

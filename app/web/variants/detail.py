@@ -14,6 +14,7 @@ from app.designs.variants.detail import WantedVariant
 from app.presentation.criteria import Line, line
 from app.reports.content import Plot
 from app.reports.plots import drawn
+from app.reports.variants import of_variant
 from app.web.shared.answers import AnswerOrJob, stored
 from app.web.shared.blocks import StepBlock
 from app.web.shared.responses import units_of
@@ -43,7 +44,7 @@ ChosenVariant.NONE = ChosenVariant("")
 async def chosen_variant(
     request: Request, services: PageServices, design: Design, steps: list[StepBlock]
 ) -> ChosenVariant:
-    """Return the variant in the address, if any."""
+    """Return the variant that the address names, if any."""
     name, job = (request.query_params.get(key, "")[:64] for key in ("variant", "job"))
     if not name:
         return ChosenVariant.NONE
@@ -63,7 +64,7 @@ async def chosen_variant(
 async def _calculated(
     request: Request, services: PageServices, design: Design, name: str
 ) -> AnswerOrJob[VariantDetail]:
-    """Return the variant, or the job that calculates it if the page does not wait so long."""
+    """Return the variant, or the job that calculates it if it takes longer than the page waits."""
     wanted = WantedVariant(design.id, name, system=units_of(request))
     answer, job = await services.calculate(PATIENCE, services.variant_details.answer, wanted, services.client)
     return AnswerOrJob(answer, job or "")
@@ -76,9 +77,5 @@ def _shown(detail: VariantDetail, steps: list[StepBlock]) -> ChosenVariant:
 
 
 def _plots(detail: VariantDetail, step: StepBlock) -> list[Plot]:
-    """Return the pictures of a step, with the outputs of the variant instead of the design's own."""
-    outputs = {
-        name: detail.outputs.get(f"{step.name}.{name}", output)
-        for name, output in step.result.outputs.items()
-    }
-    return drawn(step.template, step.result.model_copy(update={"outputs": outputs}))
+    """Return the pictures of a step, with the inputs and outputs of the variant."""
+    return drawn(step.template, of_variant(detail, step.name, step.result))

@@ -6,7 +6,10 @@ again with a message next to each faulty cell.
 
 from __future__ import annotations
 
+import re
+
 from fastapi import APIRouter, Depends, Request, Response
+from pydantic import JsonValue
 from starlette.concurrency import run_in_threadpool
 
 from app.designs.variant_sheets.grid import Grid
@@ -62,6 +65,23 @@ async def save_file(id: Id, request: Request, services: ThePageServices) -> Resp
     )
 
 
+@router.post("/designs/{id}/table")
+async def save_columns(id: Id, request: Request, services: ThePageServices) -> Response:
+    """Save which values the table of results shows, one name a line, and whether it shows changes."""
+    typed = await fields(request)
+    columns: list[JsonValue] = list(re.split(r"[\s,;]+", typed.get("columns", "").strip()))
+    chosen: dict[str, JsonValue] = {"columns": [one for one in columns if one], "changes": "changes" in typed}
+    try:
+        await services.change(id, typed.get("revision", ""), {"table": chosen})
+    except Refused as refused:
+        if refused.status not in (STALE, WRONG):
+            raise
+        detail = refused.problem.detail
+        notice = CHANGED.format(detail) if refused.status == STALE else f"Nothing was saved: {detail}"
+        return await design_page(request, services, id, notice=notice, status=refused.status)
+    return go(f"/designs/{id}#variants")
+
+
 class _Upload:
     """A table, its file type, and the revision on which it is based."""
 
@@ -77,7 +97,7 @@ async def _saved(
     grid: Grid | None = None,
     file: CsvFile | None = None,
 ) -> Response:
-    """Return the design's page after a save, or with the refused table."""
+    """Return the page of the design after a save, or with the refused table."""
     try:
         await services.save(
             save_sheet, services.designs, id, upload.content, upload.kind, upload.tag, services.once

@@ -14,6 +14,7 @@ from app.designs.variant_sheets.writer import page_columns, rows_of
 from app.designs.variants.names import BASE
 from app.presentation.criteria import Line, line
 from app.presentation.input_text import text_of
+from app.presentation.result_lines import ResultLines, result_lines
 from app.reference import Reference
 from app.web.variants.cells import CONTROL, FIRST_VARIANT
 from templates.core.criteria.comparison import WORST_FIRST
@@ -103,6 +104,8 @@ class VariantsTable:
 
     heads: list[Head]
     rows: list[Row]
+    results: ResultLines
+    with_changes: bool
     criteria: list[str]  # headings of criteria that were checked in a variant
     unchecked: list[str]  # headings of all other criteria
     base: Outcome | None
@@ -143,12 +146,14 @@ def variants_table(
     return VariantsTable(
         heads=heads,
         rows=rows,
+        results=result_lines(out.table),
+        with_changes=any(row.changes for row in out.table.rows),
         criteria=[] if refused else [_title(out, name) for name in names],
         unchecked=[] if refused else [_title(out, name) for name in unchecked],
         base=_outcome(design, out, out.base, names) if out.base and not refused else None,
         own=list(own.values()),
         count=len(out.variants),
-        governing=_governing(out),
+        governing=out.table.governing if out.variants else "",
         governing_name=governing.variant if governing else "",
         places=places,
         loose=[f"{name}: {detail}" for name, detail in faults.items() if name not in placed],
@@ -207,7 +212,7 @@ def _cell(grid: Grid, row: int, at: int, title: str, hint: str, faults: Mapping[
 
 
 def _own(design: Design, place: str) -> str:
-    """Return the design's own value as typed; empty if the design does not set it."""
+    """Return the design's own value as the user typed it; empty if the design does not set it."""
     reference = Reference.parse(place)
     block, member = reference.block, reference.member
     if not member:
@@ -218,9 +223,9 @@ def _own(design: Design, place: str) -> str:
 
 
 def _criteria(out: VariantsOut) -> tuple[list[str], list[str]]:
-    """Return the criteria that were checked in at least one variant, worst first.
+    """Return the criteria that were checked in at least one variant, worst first, then the others.
 
-    The second list has the criteria that were checked in none.
+    The others are in a second list.
     """
     worst = sorted(
         out.by_criterion.values(), key=lambda one: (WORST_FIRST.index(one.verdict), -(one.utilisation or 0))
@@ -264,19 +269,3 @@ def _files(design: Design, row: VariantResult) -> list[Files]:
         )
         for name, model in row.models.items()
     ]
-
-
-def _governing(out: VariantsOut) -> str:
-    """Return a sentence that names the worst variant and its criterion."""
-    first = out.governing
-    if first is None or not out.variants:
-        return ""
-    rows = [*out.rows, *([out.base] if out.base else [])]
-    row = next((row for row in rows if row.name == first.variant), None)
-    judged = next((one for one in row.criteria if one.name == first.criterion), None) if row else None
-    if judged is None:
-        return ""
-    about = line(judged)
-    place = f"{about.place}: " if about.place else ""
-    used = f", {about.used} used" if about.used else ""
-    return f"{place}{about.sentence}{used}"

@@ -67,3 +67,42 @@ if (form) {
     upload.querySelector("input[type=file]").addEventListener("change", () => upload.requestSubmit());
   }
 }
+
+// Sort the table of results by a column; numbers by value, words in alphabetical order, empty cells last.
+function sort(table, head) {
+  const ascending = head.getAttribute("aria-sort") !== "ascending";
+  table.querySelectorAll("[aria-sort]").forEach((other) => other.removeAttribute("aria-sort"));
+  head.setAttribute("aria-sort", ascending ? "ascending" : "descending");
+  const at = [...head.parentNode.children].indexOf(head), sign = ascending ? 1 : -1;
+  const key = (row) => row.children[at].dataset.number ?? row.children[at].textContent.trim();
+  const lines = [...table.tBodies[0].rows].sort((one, other) => {
+    const [a, b] = [key(one), key(other)], [x, y] = [Number(a), Number(b)];
+    if (Number.isFinite(x) && Number.isFinite(y) && a !== "" && b !== "") return sign * (x - y);
+    return sign * a.localeCompare(b);
+  });
+  table.tBodies[0].append(...lines);
+}
+
+// Return a table as a spreadsheet takes it from the clipboard: tabs between cells, numbers with all digits.
+function copied(table) {
+  const text = (cell) => cell.dataset.number ?? cell.textContent.trim().replace(/\s+/g, " ");
+  return [...table.rows].map((row) => [...row.cells].map(text).join("\t")).join("\n");
+}
+
+for (const table of document.querySelectorAll("[data-sortable]")) {
+  for (const head of table.tHead.rows[0].cells) {
+    const button = document.createElement("button");
+    button.type = "button";
+    button.append(...head.childNodes);
+    head.append(button);
+    button.addEventListener("click", () => sort(table, head));
+  }
+  const copy = table.closest("section").querySelector("[data-copy-table]");
+  if (copy && navigator.clipboard) {
+    copy.hidden = false;
+    copy.addEventListener("click", async () => {
+      await navigator.clipboard.writeText(copied(table));
+      copy.parentNode.querySelector("[data-copied]").textContent = "copied";
+    });
+  }
+}

@@ -43,7 +43,7 @@ class Banner:
 
 
 def banner(revision: RevisionWorksheet, *, has_criteria: bool = True) -> Banner:
-    """Return the verdict on a revision, or the reason for a missing verdict, such as no declared criteria."""
+    """Return the verdict on a revision, or the reason why there is none, such as no declared criteria."""
     verdict = revision.verdict
     if verdict is None or not revision.criteria:
         is_judged = revision.criteria is not None or (revision.state == "current" and not has_criteria)
@@ -52,7 +52,7 @@ def banner(revision: RevisionWorksheet, *, has_criteria: bool = True) -> Banner:
 
 
 def banner_over(verdict: Verdict, criteria: Iterable[Criterion]) -> Banner:
-    """Return the verdict over criteria."""
+    """Return the verdict over a list of criteria."""
     lines = [line(criterion) for criterion in criteria]
     governing = next((line for line in lines if line.name == verdict.governing), None)
     return Banner(verdict.headline, tone(verdict), governing, lines, judged=True)
@@ -63,8 +63,8 @@ def key_outputs(
 ) -> list[str]:
     """Return the outputs in the summary line of a step: judged ones, those used elsewhere, or the last.
 
-    `driving` are the outputs that relations name. Unchecked outputs come last; outputs without a value are
-    left out if others have one.
+    `driving` are the outputs that relations use. Unchecked outputs come last. Outputs without a value are
+    omitted if any output has one.
     """
     single = [name for name, output in outputs.items() if not isinstance(output.value, list)]
     ordered = sorted(criteria, key=lambda criterion: criterion.verdict == "not_checked")
@@ -108,7 +108,7 @@ def with_keys(steps: Iterable[StepBlock], revision: RevisionWorksheet, design: D
 
 
 def _by_step(criteria: Iterable[Criterion]) -> dict[str, list[Criterion]]:
-    """Return the criteria that concern each step, by their name or by the compared values."""
+    """Return the criteria that concern each step, either by their name or by the values that they compare."""
     judged: dict[str, list[Criterion]] = {}
     for criterion in criteria:
         names = [criterion.name, *_NAMES.findall(sides(criterion.require)[0])]
@@ -118,6 +118,6 @@ def _by_step(criteria: Iterable[Criterion]) -> dict[str, list[Criterion]]:
 
 
 def opened(names: Sequence[str], verdict: Banner) -> str | None:
-    """Return the step that is unfolded at first: that of the governing criterion, else the first step."""
+    """Return the step unfolded at first: that of the governing criterion, otherwise the first step."""
     governing = verdict.governing.step if verdict.governing else ""
     return governing if governing in names else next(iter(names), None)

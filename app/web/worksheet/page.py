@@ -40,7 +40,7 @@ async def list_page(request: Request, services: PageServices, wanted: str) -> Re
 
 
 async def _all(services: PageServices) -> list[SheetSummary]:
-    """Return every worksheet, up to the largest number that the pages show."""
+    """Return all worksheets, up to the largest number that a page shows."""
     page = await services.run(list_worksheets, services.worksheets, PAGE)
     sheets = page.items
     for _ in range(MOST_PAGES - 1):
@@ -77,7 +77,7 @@ async def editor_page(
 ) -> Response:
     """Return the editor with the newest version of a worksheet, or with a text that could not be saved.
 
-    An unreleased version is previewed in `design`, if one is named.
+    If a design is given, the page previews an unreleased version in it.
     """
     row = await services.run(services.worksheets.newest, id)
     sheet = await services.run(services.worksheets.show, row)
@@ -109,7 +109,7 @@ async def editor_page(
 
 
 async def _checked(services: PageServices, text: str, id: str) -> SheetCheck:
-    """Return every fault of a text under its line, or every line typeset with the numbers of the example."""
+    """Return every fault of a text under its line, or every typeset line with the numbers of the example."""
     asked = services.read(SheetCheckIn, {"text": text, "id": id})
     calculated = services.threads.run(
         services.worksheets.calculated, services.client, check.checked, asked.text, asked.id
@@ -128,7 +128,7 @@ class Row:
 
     @property
     def says_its_value(self) -> bool:
-        """Return whether the statement itself shows its value, as the default in `T = 20 °C`."""
+        """Return whether the statement itself shows its value, as the default in `T = 20 °C` does."""
         _, is_equal, behind = (self.line.mathml if self.line else "").partition(EQUALS)
         return bool(self.line and self.line.kind == "given" and is_equal and "<mi>" not in behind)
 
@@ -157,7 +157,7 @@ class TextLine:
     faults: list[SheetFault]
 
     def mark(self, fault: SheetFault) -> str:
-        """Return blanks up to the column of a fault, then a mark under the faulty text."""
+        """Return a line with a mark under the faulty text, indented by blanks."""
         end = fault.end_column or fault.column + 1
         return " " * (fault.column - 1) + "^" * max(1, min(end, len(self.text) + 1) - fault.column)
 

@@ -40,14 +40,14 @@ class DraftTrial:
 
 
 async def offered(services: PageServices, sheet: Sheet) -> list[DesignSummary]:
-    """Return designs in which a draft may be tried; those that use the worksheet come first."""
+    """Return the designs in which a draft can be tried; those that use the worksheet come first."""
     using = await services.run(list_designs, services.database, limit=OFFERED, template=sheet.id)
     rest = await services.run(list_designs, services.database, limit=OFFERED)
     return list({item.id: item for item in (*using.items, *rest.items)}.values())[:OFFERED]
 
 
 async def tried_in(services: PageServices, id: str, sheet: Sheet, checked: SheetCheck) -> DraftTrial:
-    """Return a design with the draft instead of the version that it uses, or with the draft as a new step."""
+    """Return a design with the draft in place of the version that it uses, or as a new step."""
     name, is_added, step = sheet.id, True, dict[str, JsonValue]()
     try:
         design = await services.run(services.designs.show, id)

@@ -125,7 +125,7 @@ async def test(id: Id, request: Request, services: ThePageServices) -> Response:
 
 @forms.post("/worksheets/{id}/review", dependencies=[needs("checker")])
 async def review(id: Id, request: Request, services: ThePageServices) -> Response:
-    """Record that a reviewer has read the text with this digest."""
+    """Record that a reviewer has read the text with the digest in the form."""
     typed = await fields(request)
     said = {"reviewer": typed.get("reviewer", "").strip(), "digest": typed.get("digest", "")}
 
@@ -168,7 +168,10 @@ async def delete(id: Id, request: Request, services: ThePageServices) -> Respons
 
 
 async def _act(id: str, action: Awaitable[object], request: Request, services: PageServices) -> Response:
-    """Carry out one step of the life cycle and show the page, with missing conditions after a refusal."""
+    """Carry out one step of the life cycle, and show the page.
+
+    After a refusal the page lists the missing conditions.
+    """
     try:
         await action
     except Refused as refused:

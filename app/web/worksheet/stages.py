@@ -56,7 +56,7 @@ def stages(sheet: Sheet) -> list[Stage]:
 
 
 def _faults(sheet: Sheet) -> str:
-    """Return a sentence on the faults to correct before a test."""
+    """Return a sentence about the faults that prevent a test."""
     count = len(sheet.faults)
     if not count:
         return ""
@@ -70,5 +70,5 @@ def newest_released(sheet: Sheet) -> SheetVersion | None:
 
 
 def begins_next(sheet: Sheet) -> bool:
-    """Return whether an edit creates the next version, because this one is released."""
+    """Return whether an edit starts the next version, because this one is released."""
     return sheet.state in FINISHED

@@ -43,7 +43,7 @@ forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_with_file
 
 @router.get(FORM.path)
 async def import_form(request: Request, services: ThePageServices, job: Text = "", id: Text = "") -> Response:
-    """Return the form for a file; while its job runs, its progress; then the regions or the refusal."""
+    """Return the form for a file, the progress of its job, or the regions or the refusal."""
     return await FORM.show(request, services, job, id)
 
 
@@ -70,7 +70,7 @@ async def _report(request: Request, services: PageServices, id: str) -> Response
 
 
 def _values(region: ImportedRegion) -> tuple[str, str]:
-    """Return both results as text: the first items of a list."""
+    """Return both results as text, shortened to the first items of a list."""
     return _written(region.mathcad, region.unit), _written(region.worksheet, region.unit)
 
 

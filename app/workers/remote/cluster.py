@@ -71,7 +71,7 @@ class Cluster:
             return sum(max(0, count) for count in self._free(lane).values())
 
     def why_silent(self) -> str:
-        """Return why no machine runs functions, if none does."""
+        """Return the reason why no machine runs functions, if none does."""
         if not self._thread.is_alive():
             return f"the thread that connects to {self.address} has ended: start this server again"
         if (client := self._client) is None or client.status != "running":
@@ -100,7 +100,7 @@ class Cluster:
         for _ in range(_TURNS):
             with suppress(NeverBegun):
                 return self._run_once(lane, order, preferred, on_progress, cancelled)
-        raise WorkerLost(f"{_TURNS} machines stopped before the work reached them")
+        raise WorkerLost(f"{_TURNS} machines in succession stopped before the work reached them")
 
     def _run_once(
         self,

@@ -63,7 +63,7 @@ class DaskWorker:
         return self._cluster.size(GEOMETRY) > 0
 
     def why_silent(self) -> str:
-        """Return why there is no such machine, if there is none."""
+        """Return the reason why there is no such machine, if there is none."""
         return self._cluster.why_silent()
 
     def close(self) -> None:

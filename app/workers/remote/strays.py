@@ -1,7 +1,7 @@
 """Find tasks that no machine works on, from repeated reports of the scheduler.
 
 If a machine disconnects before its task arrives, Dask keeps the task in case the machine returns. Machines of
-this program never return under the same address, so a server would wait for such a task for ever.
+this program never return under the same address, so a server would wait forever for such a task.
 """
 
 from __future__ import annotations

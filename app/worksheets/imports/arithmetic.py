@@ -38,7 +38,7 @@ class Arithmetic(Writer):
         return negative(self.value(part))
 
     def percent(self, part: Node) -> Term:
-        """Return a hundredth of a tree."""
+        """Return one hundredth of a tree."""
         return binary(self.value(part), "/", number(100), PRODUCT)
 
     def vectorized(self, part: Node) -> Term:
@@ -81,7 +81,7 @@ class Arithmetic(Writer):
         return raised(under, over)
 
     def _is_euler(self, base: Node) -> bool:
-        """Return whether a base is Euler's number: `e` labelled so, or `e` without label and definition."""
+        """Return whether a base is Euler's number: labelled `e`, or an unlabelled `e` without definition."""
         label = base.attributes.get("labels", "")
         is_free = label in UNLABELLED and "e" not in self.scope
         return key_of(base) == "e" and (label == "CONSTANT" or is_free)

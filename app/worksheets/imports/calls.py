@@ -89,11 +89,11 @@ class Calls(Writer):
     def _own(self, function: Function, arguments: list[Node]) -> Term:
         if len(arguments) != len(function.parameters):
             raise Untranslatable(
-                "the call has a wrong number of arguments", "call it with the arguments of its definition"
+                "the call has the wrong number of arguments", "call it with the arguments of its definition"
             )
         if self.depth >= MOST_INLINED:
             raise Untranslatable(
-                f"functions call each other at more than {MOST_INLINED} levels", "name each step"
+                f"function calls are nested more than {MOST_INLINED} levels deep", "name each step"
             )
         parts = [self.argument(part) for part in arguments]
         if not any(part.is_vector and not self.is_vectorised for part in parts):

@@ -24,14 +24,14 @@ class Conditions(Writer):
     """Writes conditions and case distinctions."""
 
     def value(self, node: Node) -> Term:
-        """Return a tree as a quantity; a condition is 1 if it holds and 0 otherwise."""
+        """Return a tree as a quantity; a condition becomes 1 if it holds and 0 otherwise."""
         term = self.term(node)
         if not term.is_truth:
             return term
         return Term(f"if {term.text} then 1 else 0", LOOSE).shaped(term)
 
     def condition(self, node: Node) -> Term:
-        """Return a tree as a condition; for a number, the condition that it is not 0."""
+        """Return a tree as a condition; a number becomes the condition that it is not 0."""
         if node.tag == "parens" and node.parts:
             return self.condition(node.parts[0])
         sign = node.parts[0].tag if node.tag == "apply" and node.parts else ""
@@ -86,7 +86,7 @@ class Conditions(Writer):
         raise Untranslatable("the program returns no value", "write one formula")
 
     def chain(self, parts: list[Node]) -> Term:
-        """Return successive conditions as one expression; the last one is `else`, or there is no value."""
+        """Return successive conditions as one expression; without a final `else` it may have no value."""
         branches: list[tuple[Node, Node]] = []
         waiting = list(parts)
         while waiting:
@@ -104,7 +104,7 @@ class Conditions(Writer):
                     "the program returns several values", "write one formula with `if … then … else …`"
                 )
         remedy = "add the otherwise case in Mathcad or in the line"
-        raise Untranslatable("the condition has no otherwise", remedy)
+        raise Untranslatable("the condition has no `otherwise` branch", remedy)
 
     def _cases(self, branches: list[tuple[Node, Node]], last: Node) -> Term:
         otherwise = self.value(last)

@@ -76,7 +76,7 @@ class Declarations:
         return Name(text), sort
 
     def function(self, name: str) -> Call | None:
-        """Return a function that a line has declared; None if there is none."""
+        """Return the function that a line has declared under a name; None if there is none."""
         if name not in self.functions:
             return None
         count, result = self.functions[name]

@@ -22,7 +22,7 @@ class Definitions(ListDefinitions):
     """Translates the regions that define or show values."""
 
     def take(self, outcome: Outcome, math: Node) -> None:
-        """Write the lines of a region that calculates.
+        """Write the lines for a region that calculates.
 
         Raises
         ------
@@ -50,7 +50,7 @@ class Definitions(ListDefinitions):
             raise Untranslatable("Mathcad reports an error in this region", "correct or remove it")
 
     def fail(self, math: Node, number: str) -> None:
-        """Record that the names which a region defines have no meaning."""
+        """Record that the names defined by a region have no meaning."""
         if math.tag in ("define", "globalDefine") and math.parts:
             for key in _defined(math.parts[0]):
                 self.scope[key] = FailedName(number)
@@ -60,14 +60,14 @@ class Definitions(ListDefinitions):
         return [o for o in self.outcomes.values() if o.original.block == region.block]
 
     def equation(self, region: Original) -> str:
-        """Return a constraint as text for a remedy; a placeholder if it cannot be written."""
+        """Return a constraint as text for a remedy, or a placeholder if it cannot be written."""
         try:
             return Expressions(self, self.scope).condition(region.math).text if region.math else ""
         except (Untranslatable, Unnamed):
             return "left == right"
 
     def finish(self) -> None:
-        """Write the functions that are never called, with plain numbers as parameters if they fit."""
+        """Write the functions that are never called, with pure numbers as parameters if that is possible."""
         for function in self.functions:
             outcome = self.owners[function.region]
             if function.names or outcome.state != "unverified":
@@ -133,7 +133,7 @@ class Definitions(ListDefinitions):
         self.functions.append(function)
 
     def _refuse_if_hopeless(self, function: Function) -> None:
-        """Refuse a function body with a construct that no call can make valid, such as a matrix or a loop."""
+        """Refuse a function whose body has a construct that no call can make valid, such as a matrix."""
         inner: Scope = dict(function.scope)
         for key in function.parameters:
             inner[key] = InlineTerm(Term("1", axis=None))
@@ -181,7 +181,8 @@ class _Trial:
 _HOPELESS = frozenset({
     "integral", "derivative", "limit", "loop", "symbolic calculation", "text", "complex number",
     "try and catch",
-    "matrix", "matrix product", "matrix function", "solve block", "the condition has no otherwise", "spline",
+    "matrix", "matrix product", "matrix function", "solve block", "the condition has no `otherwise` branch",
+    "spline",
     "file",
     "random numbers", "statistical function", "the formula uses an item of a matrix",
     "the formula uses a column of a matrix", "the formula uses a row of a matrix",

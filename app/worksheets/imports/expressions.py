@@ -36,8 +36,8 @@ REFUSED = {
     "while": ("loop", "write the formula for a list, or `solve`"),
     "tryCatch": ("try and catch", "state with if when there is a value"),
     "str": ("text", "use a choice, or a check"),
-    "imag": ("complex number", "calculate with real and imaginary part"),
-    "complex": ("complex number", "calculate with real and imaginary part"),
+    "imag": ("complex number", "calculate with the real and imaginary parts"),
+    "complex": ("complex number", "calculate with the real and imaginary parts"),
     "elementOf": ("membership of a set", "write a comparison"),
     "symResult": ("symbolic calculation", "write its result as a formula"),
 }

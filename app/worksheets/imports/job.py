@@ -53,7 +53,7 @@ def imported(content: bytes, title: str) -> ImportResult:
 
 
 def _left_out(sheet: OriginalSheet, outcomes: Iterable[Outcome]) -> Iterator[Outcome]:
-    """Yield a refusal for each region that the count finds in the file but that has no outcome."""
+    """Yield a refusal for each region of the file that was counted but has no outcome."""
     reported = Counter(outcome.original.number for outcome in outcomes)
     for number in (sheet.counted - reported).elements():
         outcome = Outcome(Original(number, "other", 0.0, 0.0))

@@ -91,7 +91,7 @@ def _math(body: Node) -> Node | None:
 
 
 def _renew(node: Node) -> None:
-    """Convert trees in place to the form of Mathcad Prime: element names, conditions, and subscripts."""
+    """Convert trees in place to the form of Mathcad Prime: element names, conditions and subscripts."""
     waiting = [node]
     while waiting:
         node = waiting.pop()

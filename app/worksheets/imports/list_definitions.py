@@ -72,7 +72,7 @@ class ListDefinitions(Statements):
         self.declare(outcome, key, replace(term, axis=axis, is_vector=True), self.asked(value))
 
     def _one_item(self, outcome: Outcome, target: Node, value: Node) -> None:
-        """Translate the assignment of one item of a list, which defines another list."""
+        """Translate the assignment of one item of a list, which gives a new list."""
         key = key_of(target.parts[1])
         whole = self.scope.get(key)
         if isinstance(whole, FailedName):

@@ -1,4 +1,7 @@
-"""Convert Mathcad's names to worksheet names: plain letters, one meaning each; `symbol` keeps their look."""
+"""Convert Mathcad's names to worksheet names of plain letters, each with a single meaning.
+
+The clause `symbol` preserves how a name is printed.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +27,7 @@ _TEX = frozenset(
 
 
 def key_of(node: Node) -> str:
-    """Return a name as Mathcad distinguishes it: its letters, with its subscript in braces."""
+    """Return a name as Mathcad distinguishes names: its letters, with the subscript in braces."""
     letters = []
     for piece in node.pieces:
         if isinstance(piece, str):
@@ -48,7 +51,7 @@ class Names:
         self._used = set(reserved)
 
     def take(self, key: str) -> str:
-        """Return a unique name for the Mathcad object `key`; a second one with this name becomes `x_2`."""
+        """Return a unique name for the Mathcad object `key`; a second object of that name becomes `x_2`."""
         wanted = legal(key)
         count, name = 1, wanted
         while name in self._used:

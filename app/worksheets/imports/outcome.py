@@ -34,13 +34,13 @@ class Outcome:
     notes: list[str] = field(default_factory=list)
 
     def refuse(self, construct: str, remedy: str) -> None:
-        """Record that the region has a construct which worksheets do not have."""
+        """Record that the region has a construct that worksheets lack."""
         self.state, self.construct, self.remedy = "refused", construct, remedy
         self.name, self.blocked_by = "", ""
         self.lines = [f"// refused: {one_line(construct)} (region {self.original.number})"]
 
     def block(self, name: str, by: str) -> None:
-        """Record that the region needs a name whose region was not translated."""
+        """Record that the region needs a name whose own region was not translated."""
         self.state, self.construct, self.blocked_by = "blocked", f"needs {one_line(name)}", by
         self.remedy, self.name = f"first write the content of region {by} says first", ""
         self.lines = [f"// blocked: needs {one_line(name)} of region {by} (region {self.original.number})"]
@@ -51,6 +51,6 @@ class Outcome:
 
 
 def one_line(text: str) -> str:
-    """Return the text in a form fit for a remark: one line without control characters."""
+    """Return the text as a remark needs it: one line without control characters."""
     plain = "".join(sign if sign.isprintable() else " " for sign in text)
     return " ".join(plain.split())[:200]

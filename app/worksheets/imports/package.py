@@ -124,7 +124,7 @@ def unpacked(content: bytes, budget: Budget) -> bytes:
 
 
 def is_package(content: bytes) -> bool:
-    """Return whether a file begins like a ZIP."""
+    """Return whether a file begins like a ZIP archive."""
     return content.startswith(b"PK\x03\x04")
 
 
@@ -170,4 +170,4 @@ def _check_part(part: zipfile.ZipInfo) -> None:
         raise SheetNotRead("encrypted", f"{what}: remove the password in Mathcad, and send that file")
     if part.compress_type not in _METHODS:
         what = f"its part {part.filename[:60]!a} is compressed by method {part.compress_type}"
-        raise SheetNotRead("package", f"{what}, but a sheet has deflated parts: {AGAIN}")
+        raise SheetNotRead("package", f"{what} instead of deflate: {AGAIN}")

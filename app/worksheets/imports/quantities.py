@@ -116,7 +116,7 @@ def unit_named(name: str) -> ScaledNumber | None:
 def scaled(node: Node, is_unit: bool = False) -> ScaledNumber | None:
     """Return a tree of numbers and units as one quantity; None if it contains anything else.
 
-    With `is_unit`, plain names are units, as in the unit of a result.
+    With `is_unit`, plain names count as units, as in the unit of a result.
     """
     parts = node.parts
     match node.tag:
@@ -222,7 +222,7 @@ def _monomial(node: Node) -> ScaledNumber:
     for part in node.parts:
         named = unit_named(part.attributes.get("unit", ""))
         if named is None:
-            raise ValueError("a unit that does not exist here")
+            raise ValueError("a unit that worksheets do not have")
         over = int(part.attributes.get("power-numerator", "1"))
         under = int(part.attributes.get("power-denominator", "1")) or 1
         product = product.times(named.raised(Fraction(over, under)))
@@ -240,7 +240,7 @@ def is_infinite(text: str) -> bool:
 def close(ours: Iterable[float], theirs: Iterable[float], within: float = 1e-9) -> bool:
     """Return whether values agree, relative to the largest of them.
 
-    An item of a list that is zero is compared relative to the other items.
+    A zero in a list is compared relative to the other items.
     """
     one, other = list(ours), list(theirs)
     if len(one) != len(other) or not all(map(math.isfinite, one)):

@@ -61,7 +61,7 @@ def record_of(row: Row) -> ImportRecord | None:
 
 
 def recorded(sheet: OriginalSheet, outcomes: Sequence[Outcome], text: str) -> SheetRecord:
-    """Return the record of an import in JSON form."""
+    """Return the record of an import as JSON."""
     lines = {_plain(line): number for number, line in reversed(list(enumerate(text.split("\n"), 1)))}
     owners = {o.name: o for o in outcomes if o.name and o.lines}
     return {
@@ -116,12 +116,12 @@ def _stands(region: RegionRecord, present: set[str]) -> bool:
 
 
 def require_resolved(row: Row) -> None:
-    """Check that no region of the import of a version prevents its release.
+    """Check that no imported region of a version prevents its release.
 
     Raises
     ------
     UnresolvedRegions
-        With each region that does.
+        With each region that prevents the release.
     """
     record = record_of(row)
     if record is not None and (open_regions := unresolved(record, row.text)):

@@ -61,9 +61,9 @@ class OriginalSheet:
 
 
 def count_regions(content: bytes) -> Counter[str]:
-    """Count the regions in a document by their numbers, from the tags that the parser meets.
+    """Count the regions in a document by their numbers, from the tags that the parser reports.
 
-    The function shares no code with the normal reader, so that each checks the other.
+    The function shares no code with the normal reader, so that each of them checks the other.
     """
     counted = Counter[str]()
 

@@ -47,7 +47,7 @@ class Statements:
         self.now: Outcome | None = None
 
     def axis(self, length: int) -> Axis:
-        """Return the axis for vectors of a length."""
+        """Return the axis for vectors of the given length."""
         return Axis(f"items_{length}", length, self.origin)
 
     def function(self, function: Function, arguments: Sequence[Term]) -> str | None:
@@ -111,7 +111,7 @@ class Statements:
         return name
 
     def expression(self, node: Node) -> Term:
-        """Return the expression of a tree; lists within it get separate lines."""
+        """Return the expression of a tree; each list in it gets a line of its own."""
         at = Expressions(self, self.scope)
         if node.tag in ("matrix", "parens", "transpose"):
             return at.value(node)
@@ -119,7 +119,7 @@ class Statements:
         return at.quantity(node) or at.value(node)
 
     def _keep(self, term: Term) -> Term:
-        """Declare a list within a formula in a separate line, and return its name as a term."""
+        """Declare a list that occurs in a formula on a separate line, and return its name as a term."""
         assert self.now is not None
         sort = self.declared.sort(term.text, None)
         unit, name = unit_for(sort, []), self.names.take("items")
@@ -138,7 +138,7 @@ class Statements:
         is_given: bool = False,
         words: str = "",
     ) -> Value:
-        """Write the line of a value, and define its name from here on."""
+        """Write the line of a value, and define its name from that line on."""
         sort = self.declared.sort(term.text, None)
         unit = unit_for(sort, [*wanted, *self._shown_in(key)] if is_rate(sort.kind.base) else wanted)
         name = self.names.take(key)
@@ -160,7 +160,7 @@ class Statements:
         return value
 
     def _shown_in(self, key: str) -> list[str]:
-        """Return the units in which single results are displayed, which reveal the kind of a rate."""
+        """Return the units in which single results are displayed; they reveal the kind of a rate."""
         maths = (region.math for region in self.sheet.regions)
         results = [math for math in maths if math is not None and math.tag == "eval" and math.parts]
         return [
@@ -171,12 +171,12 @@ class Statements:
         ]
 
     def _symbol(self, key: str, name: str) -> str:
-        """Return a clause with the symbol of a name if its spelling had to change, else an empty text."""
+        """Return a clause with the symbol of a name whose spelling had to change, else an empty text."""
         text = symbol(key)
         return f' (symbol "{text}")' if text and (name != look(key)) else ""
 
     def words_for(self, name: str) -> str:
-        """Return a unique description of a quantity, which gives its name in the interface."""
+        """Return a unique description of a quantity, from which its name in the interface follows."""
         words, count = name, 1
         while words.casefold() in self._words:
             count += 1
@@ -209,7 +209,7 @@ class Statements:
         if cached is None:
             return
         if any(part.tag in ("complex", "imag") for part in cached.parts):
-            raise Untranslatable("complex number", "calculate with real and imaginary part")
+            raise Untranslatable("complex number", "calculate with the real and imaginary parts")
         if any(part.tag == "real" and is_infinite(part.text) for part in cached.parts):
             raise Untranslatable("infinity", "give a number")
         asked = value.first("unitOverride") if value.tag == "eval" else None
@@ -223,7 +223,7 @@ def without_result(node: Node) -> Node:
 
 
 def _structural(sheet: OriginalSheet) -> Iterator[str]:
-    """Yield names that determine the lengths of lists; the import fixes their values."""
+    """Yield the names that determine lengths of lists; the import fixes their values."""
     for region in sheet.regions:
         if region.math is None:
             continue

@@ -49,11 +49,11 @@ class Term:
             raise Untranslatable("the formula has more than 1,800 characters", remedy)
 
     def bound(self, least: int) -> str:
-        """Return the text, in parentheses if its precedence is lower than required."""
+        """Return the text, in parentheses if its operator binds less tightly than required."""
         return self.text if self.tight >= least else f"({self.text})"
 
     def shaped(self, *others: Term) -> Term:
-        """Return the same text with the shape that its parts determine."""
+        """Return the same term with the shape that follows from its parts."""
         lists = [(part, part.axis) for part in others if part.axis is not None]
         if not lists:
             return self
@@ -66,13 +66,13 @@ class Term:
 
 
 def binary(left: Term, sign: str, right: Term, tight: int) -> Term:
-    """Return two terms joined by an operator; sums and products are extended on the left."""
+    """Return two terms joined by an operator; a sum or product on the left needs no parentheses."""
     text = f"{left.bound(tight)} {sign} {right.bound(tight + 1)}"
     return Term(text, tight, number=_folded(left.number, sign, right.number)).shaped(left, right)
 
 
 def power(base: Term, exponent: Term) -> Term:
-    """Return a power; a signed number as exponent needs no parentheses."""
+    """Return a power; an exponent that is a signed number needs no parentheses."""
     text = f"{base.bound(ATOM)}**{exponent.bound(ATOM)}"
     return Term(text, POWER, number=_folded(base.number, "**", exponent.number)).shaped(base, exponent)
 
@@ -89,7 +89,7 @@ def called(name: str, *parts: Term) -> Term:
 
 
 def reduced(name: str, part: Term) -> Term:
-    """Return a call of a function that reduces a list to one value."""
+    """Return a call of a function that reduces a list to a single value."""
     return Term(f"{name}({part.text})")
 
 

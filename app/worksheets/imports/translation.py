@@ -17,7 +17,7 @@ LONGEST_PROSE = 1_000
 
 
 def translated(sheet: OriginalSheet) -> list[Outcome]:
-    """Return the outcome of every region, before the comparison with Mathcad's results."""
+    """Return the outcome of every region, before its values are compared with Mathcad's."""
     work = Definitions(sheet)
     outcomes = [Outcome(region) for region in sheet.regions]
     work.outcomes = {id(outcome.original): outcome for outcome in outcomes}
@@ -61,7 +61,7 @@ def _calculating(outcome: Outcome, work: Definitions) -> None:
 
 
 def _solving(outcome: Outcome, work: Definitions) -> None:
-    """Translate a region of a solve block, of which only the solver defines anything."""
+    """Translate a region of a solve block; only the region with the solver defines names."""
     region = outcome.original
     assert region.math is not None
     if region.role != "solver":

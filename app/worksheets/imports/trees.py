@@ -29,7 +29,7 @@ class Node:
 
     @property
     def text(self) -> str:
-        """Return the text of this element itself."""
+        """Return the text of this element itself, without that of its children."""
         return "".join(piece for piece in self.pieces if isinstance(piece, str))
 
     @property
@@ -38,11 +38,11 @@ class Node:
         return "".join(piece if isinstance(piece, str) else piece.whole_text for piece in self.pieces)
 
     def first(self, tag: str) -> Node | None:
-        """Return the first child with a name."""
+        """Return the first child with this name."""
         return next((part for part in self.parts if part.tag == tag), None)
 
     def all(self, tag: str) -> Iterator[Node]:
-        """Yield all elements with a name in document order, including this one."""
+        """Yield all elements with this name in document order; this element is included."""
         waiting = [self]
         while waiting:
             node = waiting.pop()
@@ -51,7 +51,7 @@ class Node:
             waiting.extend(reversed(node.parts))
 
     def outermost(self, tag: str, *closed: str) -> Iterator[Node]:
-        """Yield the outermost elements with a name within this one, except those within `closed`."""
+        """Yield the outermost elements with this name inside this element, except those within `closed`."""
         waiting = list(reversed(self.parts))
         while waiting:
             node = waiting.pop()

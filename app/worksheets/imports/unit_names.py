@@ -48,7 +48,7 @@ def label_units(math: Node, defined: Collection[str], letters: Collection[str]) 
     Parameters
     ----------
     defined
-        The names that are defined here, and are therefore not units.
+        The names that the sheet defines, which are therefore not units.
     letters
         The single letters that are units in this sheet.
     """
@@ -59,7 +59,7 @@ def label_units(math: Node, defined: Collection[str], letters: Collection[str]) 
 
 
 def _placed(math: Node, defined: Collection[str]) -> Iterator[tuple[Node, _Place]]:
-    """Yield the unlabelled names, each with its position."""
+    """Yield the unlabelled names with their positions."""
     waiting: list[tuple[Node, _Place]] = [(math, "")]
     while waiting:
         node, place = waiting.pop()
@@ -76,7 +76,7 @@ def _placed(math: Node, defined: Collection[str]) -> Iterator[tuple[Node, _Place
 
 
 def _is_quantity(node: Node, defined: Collection[str]) -> bool:
-    """Return whether a product is a number, or a list of numbers, times names that may all be units."""
+    """Return whether a product is a number or a list of numbers, times names that may all be units."""
     leaves = list(_leaves(node))
     names = [leaf for leaf in leaves if leaf.tag == "id"]
     keys = [key_of(name) for name in names]

@@ -42,7 +42,7 @@ def verified(title: str, outcomes: Sequence[Outcome]) -> str:
 
 
 def _readable(title: str, outcomes: Sequence[Outcome]) -> Sheet | None:
-    """Return the worksheet after turning refused lines into remarks; None if it takes too many rounds."""
+    """Return the worksheet with refused lines turned into remarks; None if that takes too many rounds."""
     gone: dict[str, str] = {}  # removed names, with the region that declared each
     for _ in range(MOST_ROUNDS):
         lines = list(_lines(title, outcomes))
@@ -64,7 +64,7 @@ def _lines(title: str, outcomes: Iterable[Outcome]) -> Iterator[tuple[str, Outco
 
 
 def _owners(lines: Iterable[tuple[str, Outcome | None]]) -> dict[int, Outcome]:
-    """Return the outcomes by the line numbers of their lines."""
+    """Return the outcome that owns each line, by the number of the line."""
     owners, number = dict[int, Outcome](), 1
     for line, outcome in lines:
         height = line.count("\n") + 1
@@ -92,7 +92,7 @@ def _take_out(faults: Sequence[SheetFault], owners: Mapping[int, Outcome], gone:
 
 
 def _block_followers(owners: Mapping[int, Outcome], gone: dict[str, str]) -> None:
-    """Block lines that need removed names, in order, without reading the sheet again."""
+    """Block the lines that need removed names, in order, without reading the sheet again."""
     for outcome in {id(one): one for one in owners.values()}.values():
         names = _declared(outcome) if outcome.state == "unverified" else []
         lacking = [name for name in _used(outcome) if name in gone and name not in names] if names else []

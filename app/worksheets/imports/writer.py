@@ -28,7 +28,7 @@ class Sheets(Protocol):
         """Return the name of a curve through points."""
 
     def axis(self, length: int) -> Axis:
-        """Return the axis for vectors of a length."""
+        """Return the axis for vectors of the given length."""
 
 
 @dataclass
@@ -47,7 +47,7 @@ class Writer:
     keep: Callable[[Term], Term] | None = None
 
     def within(self, scope: Scope) -> Self:
-        """Return the same writer with another scope."""
+        """Return the same writer for another scope."""
         return replace(self, scope=scope)
 
     def term(self, node: Node) -> Term:
@@ -63,11 +63,11 @@ class Writer:
         raise NotImplementedError
 
     def value(self, node: Node) -> Term:
-        """Return a tree as a quantity; a condition is 1 if it holds and 0 otherwise."""
+        """Return a tree as a quantity; a condition becomes 1 if it holds and 0 otherwise."""
         raise NotImplementedError
 
     def condition(self, node: Node) -> Term:
-        """Return a tree as a condition; for a number, the condition that it is not 0."""
+        """Return a tree as a condition; a number becomes the condition that it is not 0."""
         raise NotImplementedError
 
     def either(self, test: Term, one: Node, other: Node) -> Term:

@@ -44,8 +44,8 @@ async def import_worksheet(
 ) -> Response:
     """Import a sheet of Mathcad Prime (.mcdx) or Mathcad 11 to 15 (.xmcd, .xmcdz) as a draft.
 
-    The body of the request is the file itself. The result of the job is the worksheet. Every region of the
-    sheet is accounted for: see `GET /worksheets/{id}/import`.
+    The body of the request is the file itself. The result of the job is the worksheet. `GET
+    /worksheets/{id}/import` lists the outcome of every region of the sheet.
     """
     body = await request.body()
     return accepted(await threads.run(imports.begin, body, id, file, once))

@@ -48,7 +48,7 @@ async def check_worksheet(
 ) -> Response:
     """Check a text: return every fault with its line, or every line with the numbers of the example.
 
-    Nothing is saved, and a faulty text is not an error of the request.
+    Nothing is saved. A faulty text is not an error of the request.
     """
     content = await threads.run(worksheets.calculated, client, checked, body.text, body.id)
     return Response(content, media_type="application/json")
@@ -118,7 +118,7 @@ def read_worksheet_text(id: Id, worksheets: TheWorksheets, version: OfVersion = 
 async def try_worksheet(
     id: Id, worksheets: TheWorksheets, threads: TheThreads, client: TheClient, if_match: IfMatch = None
 ) -> Response:
-    """Run the tests of the worksheet, and calculate its example and steps around it: draft → tested."""
+    """Run the tests of the worksheet, and calculate its example and inputs near it: draft → tested."""
     row = await threads.run(worksheets.test, id, if_match, client)
     return await threads.run(_shown, worksheets, row)
 

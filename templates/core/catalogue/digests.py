@@ -4,7 +4,7 @@ A released version is a file that nobody edits. Its digest is the SHA-256 of the
 module paths of imports; the imported names are included. A module that a released file imports may therefore
 move to another folder, and the import statement may be updated. The digest ignores docstrings, comments,
 layout and the attributes in `MARKS`, because they do not affect results. It includes the files of groups,
-which give a template inputs, formulas or rules.
+which give a template inputs, formulas or rules, and of functions that return a rule for several models.
 
 A worksheet computes its own digest.
 """
@@ -26,7 +26,7 @@ from templates.core.language.spec import Declaration, Requirement, Shared
 from templates.core.language.syntax_trees import parse
 from templates.core.language.template import Template
 
-MARKS = frozenset({"withdrawn", "criteria", "assumptions", "toleranced", "sections"})
+MARKS = frozenset({"withdrawn", "criteria", "assumptions", "main_results", "toleranced", "sections"})
 """Class attributes that a released version may change."""
 
 _MOST_KEPT = 256  # digests to cache, keyed by the source text; every page shows them
@@ -58,12 +58,12 @@ def release_file(cls: type[Template]) -> Path | None:
 
 
 def _sources(cls: type[Template]) -> Iterator[str]:
-    """Yield the source of the template, then the sources of its groups."""
-    for base in cls.__mro__:
-        if base is cls or _declares(base):
-            module = inspect.getmodule(base)
-            assert module is not None
-            yield text_of(module) or inspect.getsource(module)
+    """Yield the source of the template, of its groups, and of the modules that return its shared rules."""
+    groups = [base for base in cls.__mro__ if base is cls or _declares(base)]
+    for owner in (*groups, *(rule.function for rule in cls.requirements)):
+        module = inspect.getmodule(owner)
+        assert module is not None
+        yield text_of(module) or inspect.getsource(module)
 
 
 def _declares(base: type) -> bool:
@@ -72,7 +72,7 @@ def _declares(base: type) -> bool:
 
 
 def _content(tree: ast.Module) -> str:
-    """Return the calculating content of a file as text: the imported names, then the syntax tree.
+    """Return the part of a file that affects results, as text: the imported names, then the syntax tree.
 
     The tree is serialised field by field, because `ast.unparse` and `ast.dump` differ between Python
     versions.
@@ -86,7 +86,7 @@ def _is_import(node: ast.AST) -> bool:
 
 
 def _imported(node: Any) -> Iterator[tuple[str, str]]:
-    """Yield each imported name without its module path, together with its name in the file."""
+    """Yield each imported name without its module path, together with the name used in the file."""
     for alias in node.names:
         name = alias.name.rpartition(".")[2]
         yield name, alias.asname or name

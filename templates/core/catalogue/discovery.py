@@ -143,7 +143,10 @@ def declared_in_file(path: Path) -> type[Template]:
 
 
 def _imported(path: Path) -> ModuleType:
-    """Import a file and return its module: by package name if it has one, otherwise from its content."""
+    """Import a file and return its module.
+
+    A file in a package is imported by its name, any other file from its content.
+    """
     if package := package_of(path.parent):
         return importlib.import_module(f"{package}.{path.stem}")
     return load(path, path.read_bytes())
@@ -158,7 +161,7 @@ def package_of(folder: Path) -> str:
 
 
 def _usable(path: Path) -> ModuleType:
-    """Import a file and return its module; an `UnusableFile` names the line that fails."""
+    """Import a file and return its module; the `UnusableFile` of a faulty file names the failing line."""
     try:
         return _imported(path)
     except Exception as error:

@@ -33,7 +33,7 @@ def record(cls: type[Template], more: Iterable[Mapping[str, Any]] = ()) -> dict[
     cls
         The version.
     more
-        Further cases. Each gives under `inputs` the quantities that differ from the example, and its `level`.
+        Further cases. Each gives its `level`, and under `inputs` the quantities that differ from the example.
     """
     return {
         "id": cls.id,
@@ -48,7 +48,7 @@ def record(cls: type[Template], more: Iterable[Mapping[str, Any]] = ()) -> dict[
 def codes(refusal: InvalidInputs) -> list[str]:
     """Return the codes of the faults for which inputs are refused, each code once.
 
-    How many faults have the same cause is not recorded.
+    The record does not state how many faults have the same cause.
     """
     return sorted({fault.code for fault in refusal.faults})
 
@@ -59,9 +59,9 @@ def golden_file(cls: type[Template], folder: Path) -> Path:
 
 
 def freeze(cls: type[Template], folder: Path) -> Path:
-    """Write the golden record of a version and the digest file next to its source; return the record's path.
+    """Write the golden record of a version, and the digest file next to its source; return the record's path.
 
-    Further cases are read from the folder `more`, from the file with the record's name.
+    Further cases are read from the file in the folder `more` that has the name of the record.
 
     Raises
     ------
@@ -151,14 +151,14 @@ def _case(cls: type[Template], others: Mapping[str, Any], level: str) -> dict[st
 
 
 def _given(cls: type[Template], others: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """Return the example's inputs in SI with defaults, without missing inputs and those that are outputs."""
+    """Return the example's inputs in SI with defaults, except missing ones and those that are outputs."""
     template = cls.from_quantities({**cls.example, **(others or {})})
     reported = {name: declared for name, declared in cls.inputs.items() if is_reported(template, declared)}
     return {name: getattr(template, declared.attribute) for name, declared in reported.items()}
 
 
 def _steps(declared: Input, value: Any) -> list[Any]:
-    """Return alternative values of one input: other options, one more or one less, 10 % below and above."""
+    """Return alternative values of one input: other options, one more or less, or 10 % below and above."""
     if value is None or isinstance(value, tuple):
         return []
     if isinstance(declared, Choice):

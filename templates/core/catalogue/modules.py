@@ -39,9 +39,9 @@ class _Text:
 
 
 def load(path: Path, content: bytes, digest: str = "") -> ModuleType:
-    """Return the module created from the content of a file.
+    """Return the module that is created from the content of a file.
 
-    The module is created once for each digest, by default the digest of the content.
+    It is created once for each digest, by default the digest of the content.
 
     Raises
     ------
@@ -87,13 +87,13 @@ def text_of(module: ModuleType) -> str | None:
 def is_outside(cls: type) -> bool:
     """Return whether a class comes from outside this program's packages.
 
-    This is true for a team's files, worksheets and models.
+    This is true for a team's files, worksheets and imported models.
     """
     return cls.__module__.partition(".")[0] in (OUTSIDE, WORKSHEETS, IMPORTED)
 
 
 def failing_line(error: BaseException, path: Path) -> int | None:
-    """Return the last line of a file in an error's traceback."""
+    """Return the number of the last line of a file that appears in an error's traceback."""
     if isinstance(error, SyntaxError) and _is_in(error.filename or "", path):
         return error.lineno
     frames = traceback.extract_tb(error.__traceback__)

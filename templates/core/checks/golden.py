@@ -20,9 +20,9 @@ NEW_VERSION = "undo the edit, and put the change into a new version"
 
 
 def records(path: Path) -> tuple[Path, ...]:
-    """Return the paths at which the golden record may be.
+    """Return the paths where the golden record may be.
 
-    They lie next to a team's file, or in a folder `golden` next to it.
+    They are next to a team's file, or in a folder `golden` next to it.
     """
     return path.with_suffix(".json"), path.parent / "golden" / f"{path.stem}.json"
 

@@ -22,7 +22,10 @@ MOST_CYCLES = 10
 
 
 def faults_of_structure(cls: type[Template]) -> Iterator[FileFault]:
-    """Yield every fault of the source. If there are any, calculating the template would only repeat them."""
+    """Yield every fault of the source.
+
+    If there are any, the template is not calculated, because that would only repeat them.
+    """
     if cls.sheet:
         return  # a worksheet was checked completely when it was read
     yield from _docstring(cls)

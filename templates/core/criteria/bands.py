@@ -81,7 +81,7 @@ class Estimate:
         return not np.isnan(self.error).any()
 
     def bounds(self) -> Bounds:
-        """Return the band of the value; if its error is unknown, the value itself for both bounds."""
+        """Return the band of the value; if its error is unknown, both bounds are the value itself."""
         if self.is_exact or self.is_known is False:
             return self.value, self.value
         error = spread(self.error, self.axes)
@@ -148,7 +148,7 @@ def band(value: Value, error: Value) -> Bounds:
 
 
 def _band_of_one(value: float, error: float) -> tuple[float, float]:
-    """Return the `band` of a single value, in a tenth of the time."""
+    """Return the `band` of a single value, in a tenth of the time that `band` takes."""
     if math.isnan(value) or math.isnan(error):
         return math.nan, math.nan
     if error >= 1:
@@ -172,7 +172,7 @@ def band_relative_to(value: Value, error: Value, scale: Value) -> Bounds:
 
 
 def largest_true(size: Value, error: Value) -> Value:
-    """Return the largest true magnitude of a calculated value with a relative error."""
+    """Return the largest possible true magnitude of a calculated value with a relative error."""
     with np.errstate(all="ignore"):
         most = np.where(np.asarray(error) < 1, size / (1 - error), np.inf)
         return np.where(np.isnan(error), np.nan, most)[()]
@@ -209,7 +209,7 @@ def value_and_bounds(
 def _own_shifts(
     side: Relation, estimates: Mapping[str, Estimate], values: Mapping[str, Value]
 ) -> Iterator[Shift]:
-    """Yield the value of a side with each uncertain name at both ends of its band, the others unchanged."""
+    """Yield the value of a side with each uncertain name at both ends of its band, others unchanged."""
     for name in sorted(side.names):
         if not estimates[name].is_exact:
             low, high = estimates[name].bounds()
@@ -239,7 +239,7 @@ def relative_width(value: float, low: float, high: float) -> float | None:
 def aligned(estimates: Mapping[str, Estimate], axes: int) -> Mapping[str, Estimate]:
     """Return the estimates with arrays that broadcast together.
 
-    Values per point also broadcast along a curve.
+    A value for each point also broadcasts along a curve.
     """
     if not axes:
         return estimates

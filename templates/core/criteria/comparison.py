@@ -32,7 +32,7 @@ Codes = int | NDArray[np.int8]
 
 
 def is_met(codes: NDArray[Any]) -> Mask:
-    """Return which verdicts are met, with known or unknown errors."""
+    """Return a mask of the verdicts that are met, whether their errors are known or not."""
     mask: Mask = np.isin(codes, (MET_ERROR_UNKNOWN, MET))
     return mask
 
@@ -80,7 +80,7 @@ def compare(
     *,
     is_known: Truth = True,
 ) -> Comparison:
-    """Compare the sides of a criterion whose names all have estimates; places with NaN are not checked.
+    """Compare the sides of a criterion, all of whose names have estimates; places with NaN are not checked.
 
     `shifts` are the values of all names after an upstream value was moved to either end of its band;
     `is_known` states where all upstream errors are known.
@@ -105,7 +105,7 @@ def compare(
 
 
 def _spread(values: Mapping[str, Value], estimates: Mapping[str, Estimate], axes: int) -> Mapping[str, Value]:
-    """Return the shifted values; values per point become arrays that broadcast along a curve."""
+    """Return the shifted values; a value for each point becomes an array that broadcasts along a curve."""
     return {name: v if estimates[name].axes else spread(v, axes) for name, v in values.items()}
 
 
@@ -124,7 +124,7 @@ def verdicts(
     limit_bounds: Bounds,
     is_known: Truth = True,
 ) -> Codes:
-    """Return the verdict for two sides with their bands; equality meets the criterion.
+    """Return the verdicts for two sides with their bands; equality meets the criterion.
 
     The bands include the known errors; `is_known` states where all errors are known.
     """
@@ -144,7 +144,10 @@ def verdicts(
 
 
 def _opposed(sign: Sign, value: Bounds, limit: Bounds) -> tuple[Bounds, Bounds]:
-    """Return two pairs (a, b): the criterion is met if a ≥ b in the first, not met if a < b in the second."""
+    """Return two pairs (a, b) of bounds.
+
+    The criterion is met if a ≥ b in the first pair, and not met if a < b in the second.
+    """
     if sign == ">=":
         return (value[0], limit[1]), (value[1], limit[0])
     return (limit[0], value[1]), (limit[1], value[0])

@@ -128,7 +128,7 @@ class Criterion:
 
     @cached_property
     def stated(self) -> Mapping[str, Any]:
-        """Return, by name, the fields that every judgement of this criterion has."""
+        """Return, by name, the fields that all judgements of this criterion share."""
         return {
             "name": self.name,
             "words": self.words,
@@ -218,8 +218,8 @@ def read_comparison(text: str) -> tuple[Relation, Sign, Relation]:
     Raises
     ------
     FaultyText
-        With code `syntax` without exactly one `>=` or `<=`; with `index`, `no_truth` or `shape` if a side
-        contains an item, a condition or a list; or as raised by `parse`.
+        With code `syntax` if there is not exactly one `>=` or `<=`; with `index`, `no_truth` or `shape` if a
+        side contains an item, a condition or a list; or as raised by `parse`.
     """
     if not isinstance(text, str) or len(text) > LONGEST_REQUIRE:
         raise FaultyText("syntax", f"`require` must be a text of at most {LONGEST_REQUIRE} characters")
@@ -236,6 +236,9 @@ def read_comparison(text: str) -> tuple[Relation, Sign, Relation]:
         )
         raise FaultyText("index", detail)
     for side in (value, limit):
+        if side.rounding:
+            remedy = f"make {excerpt(side.text)} a parameter of the design and compare that"
+            raise FaultyText("syntax", f"a side of a criterion cannot be rounded; {remedy}")
         if side.has_conditions or side.has_lists:
             what, code = ("condition", "no_truth") if side.has_conditions else ("list", "shape")
             remedy = f"make {excerpt(side.text)} a parameter of the design and compare that"
@@ -327,12 +330,12 @@ def _shared_kind(sign: Sign, value: Relation, limit: Relation, kinds: Mapping[st
 
 
 def _in_kind(name: str, kind: Kind) -> str:
-    """Return the unit of a limit; K becomes a unit of difference beside a temperature difference."""
+    """Return the unit of a limit; beside a temperature difference, K becomes a unit of difference."""
     return difference_in(name) if kind.is_difference and not unit(name).difference else name
 
 
 def _shown_unit(kind: Kind, declared: list[NameDescription]) -> str:
-    """Return the unit of the first name that has the kind of the sides, else the SI base unit."""
+    """Return the unit of the first name that has the kind of the sides, otherwise the SI base unit."""
     fitting = (one.unit for one in declared if _is_alike(one.measured, kind))
     return next(fitting, None) or kind.unit
 

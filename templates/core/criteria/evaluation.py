@@ -49,12 +49,12 @@ class Instead:
 
     @property
     def rows(self) -> Codes:
-        """Return the replacement verdicts: a missing value cannot violate a criterion with certainty."""
+        """Return the replacement verdicts; a missing value cannot violate a criterion with certainty."""
         codes = self.judgement.rows
         return np.where(np.equal(codes, NOT_MET), NOT_CHECKED, codes).astype(np.int8)
 
     def parts(self) -> Parts:
-        """Return the fields of a judgement of single values that replace those of the original criterion."""
+        """Return the fields that replace those of the original criterion in a judgement of single values."""
         if self.judgement.verdict not in ("met", "undecided"):
             return {}
         within = "" if self.judgement.verdict == "met" else "within the error of the calculation: "
@@ -92,11 +92,11 @@ def judge(
     estimates
         The values of its names, as far as they are available.
     absent
-        Why the other names have no value.
+        The reasons why the other names have no value.
     along
-        The places, if a curve is judged.
+        The places along the curve, if a curve is judged.
     unit_name
-        The unit in which to report, if not that of the criterion.
+        The unit in which to report, if it is not that of the criterion.
     shifts
         The values of all names after an upstream value was moved to either end of its band.
     noted
@@ -146,7 +146,7 @@ def _unknown(criterion: Criterion, estimates: Mapping[str, Estimate]) -> list[st
 
 @lru_cache(maxsize=1024)
 def _lack(absent: tuple[Absent, ...]) -> Mapping[str, Any]:
-    """Return which inputs to give, and the reasons, for names without a value."""
+    """Return the inputs to give, and the reasons, for names without a value."""
     give = dict.fromkeys(name for one in absent for name in one.give)
     reasons = dict.fromkeys(one.reason for one in absent if one.reason)
     return {"give": tuple(give), "reason": "; ".join(reasons) or None}
@@ -211,7 +211,7 @@ def _counted(rows: Codes) -> Parts:
 
 
 def _no_value(used: list[Estimate], point: tuple[int, ...]) -> str:
-    """Return why there is no value at a point."""
+    """Return the reason why there is no value at a point."""
     for reasons in (estimate.reasons for estimate in used if estimate.reasons is not None):
         if reason := reasons[_own_place(point, reasons.shape)]:
             return str(reason)

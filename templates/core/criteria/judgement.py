@@ -95,7 +95,7 @@ class Judgement:
 
     @property
     def sides(self) -> tuple[str, str]:
-        """Return value and limit as text."""
+        """Return the value and the limit as text."""
         return _parts_of(self.require).sides
 
     @property
@@ -183,7 +183,7 @@ def is_model(truth: str | None) -> bool:
 
 
 def not_judged(judgement: Judgement) -> str:
-    """Return a sentence on why there is no verdict."""
+    """Return a sentence that gives the reason why there is no verdict."""
     return f"{judgement.words} cannot be judged: {judgement.reason}"
 
 
@@ -207,7 +207,7 @@ class Side(NamedTuple):
 
 
 def related(left: str, sign: str, right: str) -> str:
-    """Return a true relation without numbers: `minimum film thickness is below permissible film`."""
+    """Return the true relation without numbers, as in `minimum film thickness is below permissible film`."""
     return f"{left} {IS[sign]} {right}"
 
 
@@ -219,7 +219,7 @@ def compared(left: Side, sign: str, right: Side, unit: str) -> str:
 
 
 def told_apart(one: float, other: float) -> tuple[str, str]:
-    """Return two numbers as text with enough digits to differ, unless they are equal."""
+    """Return two numbers as text, with enough digits to differ if they are not equal."""
     texts = (f"{one:.{DIGITS}g}", f"{other:.{DIGITS}g}")
     digits = DIGITS
     while texts[0] == texts[1] and one != other and digits < _MOST_DIGITS:

@@ -67,7 +67,7 @@ def read_limits(criteria: Iterable[Criterion], raw: Mapping[str, Any]) -> dict[s
     Raises
     ------
     InvalidInputs
-        With all faults at once, each named such as `limits.permissible_pressure`.
+        With all faults at once, each under a name such as `limits.permissible_pressure`.
     """
     if not raw:
         return {}

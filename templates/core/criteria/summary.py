@@ -85,7 +85,7 @@ def _may_govern(judgement: Judgement, waiting: Collection[tuple[str, str]]) -> b
 
 @lru_cache(maxsize=1024)
 def _headline(counts: tuple[int, ...], unknown: int, waived: int) -> str:
-    """Return a text with the number of criteria of each verdict in `SHOWN`.
+    """Return a text with the number of criteria for each verdict in `SHOWN`.
 
     Criteria met with an unknown error are counted separately.
     """

@@ -60,7 +60,7 @@ def worst_of_rows(criterion: Criterion, compared: Comparison, count: int) -> tup
     -------
     tuple
         Codes (count,); value, limit, low, high, lowest and highest limit [SI], each (count,); and a mask of
-        where every error behind them is known.
+        the rows for which all contributing errors are known.
     """
     sides = (compared.value, compared.limit, *compared.value_bounds, *compared.limit_bounds)
     codes = np.asarray(compared.codes)
@@ -80,7 +80,7 @@ def _clearance(criterion: Criterion, sides: list[Array]) -> Array:
     """Return the distance of the worst bound from the limit, positive on the safe side.
 
     The distance is relative if the limit is not zero. If the band is open, the value itself is used. A
-    missing value gets a finite number, which distinguishes it from masked points.
+    missing value gets a finite number, so that it differs from masked points.
     """
     value, limit, low, high, limit_low, limit_high = sides
     with np.errstate(all="ignore"):

@@ -26,7 +26,7 @@ def absence(self: Calculation, declaration: Formula[Any]) -> str | None:
 
 
 def _explained(self: Calculation, declaration: Formula[Any]) -> str | None:
-    """Return the reason noted by a formula beneath this one if its result exists at no point."""
+    """Return the reason noted by a formula on which this one depends, if its result exists nowhere."""
     explaining = [mask for mask in self.ledger.masks if mask.explains and mask.where.all()]
     if not explaining:
         return None
@@ -35,7 +35,7 @@ def _explained(self: Calculation, declaration: Formula[Any]) -> str | None:
 
 
 def refusal(self: Calculation, declaration: Formula[Any], value: float) -> Fault:
-    """Return a fault for a formula's result outside its domain; it names the inputs behind the result."""
+    """Return a fault for a formula's result outside its domain; it names the inputs behind that result."""
     meaning = declaration.meaning.at(self.level)
     beneath = sorted(self.depends_on(declaration.attribute) & self.declarations.keys())
     used = (self.declarations[n].name for n in beneath)
@@ -85,7 +85,7 @@ def masked(self: Calculation, declaration: Formula[Any], value: Array) -> Array:
 
 
 def outside_published(declaration: Declaration, value: Any, level: str = "") -> Notice | None:
-    """Return a warning with the limit if a value leaves its published range, else None."""
+    """Return a warning with the limit if a value leaves its published range, otherwise None."""
     meaning = declaration.meaning.at(level)
     if meaning.published_si is None:
         return None

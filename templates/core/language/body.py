@@ -26,10 +26,10 @@ class Body(ABC):
 
     @abstractmethod
     def __call__(self, template: Any) -> Any:
-        """Return the SI value for the values of a template."""
+        """Return the SI value, given the values of a template."""
 
     def seconds(self, points: int) -> float:
-        """Return the approximate calculation time for a number of points, to an order of magnitude [s]."""
+        """Return the order of magnitude of the calculation time for a number of points [s]."""
         return 0.0
 
     @abstractmethod

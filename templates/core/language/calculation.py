@@ -39,6 +39,7 @@ class Calculation:
     example: ClassVar[Mapping[str, Any]] = {}
     assumptions: ClassVar[tuple[str, ...]] = ()  # of the model, on the unsafe side; one sentence each
     criteria: ClassVar[Mapping[str, Any]] = {}  # by name: `"film >= limit"`, or an object with `require`
+    main_results: ClassVar[tuple[str, ...]] = ()  # the inputs and outputs that a table of designs shows
     precision: ClassVar[float] = (
         1e-12  # relative precision to which results of a released version must agree; solvers: 1e-8
     )
@@ -83,7 +84,7 @@ class Calculation:
         self.__setattr__(name, None)
 
     def as_given(self, attribute: str) -> Any:
-        """Return the given or default value of an input; NaN if its formula must compute it.
+        """Return the value of an input as given or by default; NaN if a formula must compute it.
 
         Pass the attribute as a literal, because the language finds the dependencies of a formula in its
         source.
@@ -101,8 +102,8 @@ class Calculation:
     def dependencies(cls, attribute: str) -> frozenset[str]:
         """Return the ancestors of an attribute, and the inputs that any of them reads as given.
 
-        A formula for the default of an input may read this input as given, so this is not an order of
-        evaluation.
+        A formula for the default of an input may read this input as given, so the result does not define an
+        order of evaluation.
         """
         if attribute not in cls._dependencies:
             ancestors = cls.ancestors(attribute)

@@ -24,7 +24,7 @@ BROKEN = "inconsistent"
 def suspects(template: Calculation, rule: Requirement) -> tuple[str, ...]:
     """Return the API names of the inputs that may have broken a rule at a single point.
 
-    Given inputs come before derived inputs; otherwise the order is that of the rule.
+    Given inputs come before derived inputs; otherwise they have the order of the rule.
     """
     with np.errstate(all="ignore"):
         sides = list(_compared(outcome(template, rule)))
@@ -35,7 +35,7 @@ def suspects(template: Calculation, rule: Requirement) -> tuple[str, ...]:
 
 
 def _compared(result: Outcome) -> Iterator[Operand]:
-    """Yield the operands of the false parts of a rule; all operands if a part has unknown causes."""
+    """Yield the operands of the false parts of a rule."""
     if result.comparison is not None:
         yield from (result.comparison.left, result.comparison.right)
     elif result.parts:
@@ -73,7 +73,7 @@ def _joined(broken: Sequence[Fault]) -> Iterator[Fault]:
 
 
 def _commonest(broken: Sequence[Fault]) -> str:
-    """Return the input that can have broken most rules; if there are several, the one named first."""
+    """Return the input that may have broken most rules; of several such inputs, the one named first."""
     places: dict[str, list[int]] = {}
     for fault in broken:
         for place, name in enumerate(fault.names):

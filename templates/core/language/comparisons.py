@@ -98,7 +98,7 @@ class Operand(_RecordingValue):
 
     @property
     def constant(self) -> float | None:
-        """Return the number, if it does not depend on the template."""
+        """Return the number, if it does not depend on the template; otherwise None."""
         return self.node.value if isinstance(self.node, ast.Constant) else None  # type: ignore[return-value]
 
 
@@ -114,12 +114,12 @@ class Comparison:
 
     @property
     def actual(self) -> Sign:
-        """Return the sign that holds between the values: the opposite sign if the comparison is false."""
+        """Return the sign that holds between the values: the opposite of the written one if that is false."""
         return self.sign if np.all(plain(self.holds) | ~np.asarray(self.where)) else OPPOSITE[self.sign]
 
     @property
     def ordered(self) -> tuple[Operand, Operand]:
-        """Return the side that must be smaller, then the side that must be larger."""
+        """Return first the side that must be smaller, then the side that must be larger."""
         return (self.left, self.right) if self.sign in ("<", "<=") else (self.right, self.left)
 
     @property
@@ -135,7 +135,7 @@ class Comparison:
 
 
 def worst_share(small: Any, large: Any, where: Truth = True) -> float | None:
-    """Return the largest ratio of the smaller required side to the larger one, over the points in `where`.
+    """Return the largest ratio of the side that must be smaller to the other, over the points in `where`.
 
     The result is None if no point has both values, if a value is negative, or if the larger side is 0.
     """
@@ -161,9 +161,9 @@ class Outcome(_RecordingValue):
     equated: tuple[Operand, ...] = ()
 
     def decisive(self, where: Truth = True) -> Iterator[Comparison]:
-        """Yield the comparisons that decide the truth value, each with the points where it does.
+        """Yield the comparisons that decide the truth value, each with the points where it does so.
 
-        Where none of several alternatives holds, the last one counts.
+        Where none of several alternatives is true, the last one counts.
         """
         if self.comparison is not None:
             if np.any(where):
@@ -219,7 +219,7 @@ class _RecordedTemplate:
         return _read(name, getattr(self._template, name))
 
     def as_given(self, attribute: str) -> Any:
-        """Return the given value of an input as an operand without its formula."""
+        """Return the given value of an input as an operand that does not include the input's formula."""
         return _read(attribute, self._template.as_given(attribute))
 
 
@@ -238,7 +238,7 @@ def plain(value: Any) -> Any:
 
 
 def _recorded(ufunc: np.ufunc, inputs: Sequence[Any], result: Any) -> Any:
-    """Return the result of a ufunc as an operand or outcome with its origin."""
+    """Return the result of a ufunc as an operand or outcome that knows its origin."""
     if ufunc in _SIGNS:
         left, right = map(_operand, inputs)
         return Outcome(result, Comparison(left, _SIGNS[ufunc], right, result))
@@ -282,7 +282,7 @@ def _operand(value: Any) -> Operand:
 
 
 def _written(value: Any) -> ast.expr | None:
-    """Return the literal number in a rule as a syntax tree, if it is one."""
+    """Return a literal number in a rule as a syntax tree; None for anything else."""
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
         return None
     if value == math.pi:

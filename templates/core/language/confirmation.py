@@ -46,7 +46,7 @@ def confirmed(
 ) -> list[Root]:
     """Return the solutions at the requested level.
 
-    A scanned solution is returned unconfirmed if the requested level has none nearby, or if there are too
+    A solution of the scan is returned unconfirmed if the requested level has none nearby, or if there are too
     many solutions to confirm.
     """
     is_other = requested.chooses or not requested.is_at_levels_of(scanned)
@@ -58,13 +58,13 @@ def confirmed(
 
 
 def _shown(curve: SampledCurve, bounds: tuple[float, float]) -> float:
-    """Return the distance between the bounds in the declared unit."""
+    """Return the distance between the bounds, in the declared unit."""
     scale = curve.x.scale
     return float(scale.from_si(bounds[1])) - float(scale.from_si(bounds[0]))
 
 
 def _distinct(roots: list[Root], span: float) -> list[Root]:
-    """Return each solution once: two scanned solutions may have converged to the same one."""
+    """Return each solution once, because two solutions of the scan may have converged to the same one."""
     kept: list[Root] = []
     for root in roots:
         if not (kept and root.confirmed and root.value - kept[-1].value <= ALIKE * span):
@@ -94,9 +94,9 @@ def _polished(
     bounds: tuple[float, float],
     outputs: Outputs,
 ) -> tuple[float, Outputs] | None:
-    """Return the crossing of a curve near a scanned one, with the output there; None without convergence.
+    """Return the crossing of a curve near that of the scan, with the output there; None without convergence.
 
-    The first step uses the slope of the scanned curve, further steps use secants.
+    The first step uses the slope of the scanned curve; further steps use secants.
     """
     x, slope = place.x, _slope(scanned, place.x, bounds)
     size = abs(curve.wanted) or abs(slope) * (bounds[1] - bounds[0])

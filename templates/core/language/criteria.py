@@ -87,7 +87,7 @@ def is_due(evaluated: EvaluatedValues, criterion: Criterion) -> bool:
 
 
 def missing_of(evaluated: EvaluatedValues, criterion: Criterion) -> MissingValue | None:
-    """Return the criterion's rule for a missing value, if another comparison can be judged instead.
+    """Return a criterion's rule for a missing value, if another comparison can be judged instead.
 
     No output is computed beyond those already evaluated.
     """
@@ -100,7 +100,7 @@ def missing_of(evaluated: EvaluatedValues, criterion: Criterion) -> MissingValue
 
 
 def _is_missing(value: Any) -> bool:
-    """Return whether a value is missing everywhere or at one or more points."""
+    """Return whether a value is missing at one or more points."""
     return value is None or (np.ndim(value) > 0 and bool(np.isnan(value).any()))
 
 
@@ -139,7 +139,7 @@ def level_and_truth(evaluated: EvaluatedValues, output: str | None) -> dict[str,
 def estimates_of(
     evaluated: EvaluatedValues, criterion: Criterion
 ) -> tuple[dict[str, Estimate], dict[str, Absent]]:
-    """Return the values of a criterion's names with their errors, and why the other names have no value."""
+    """Return the values of a criterion's names with their errors, and the reasons for missing values."""
     estimates: dict[str, Estimate] = {}
     absent: dict[str, Absent] = {}
     limits = criterion.limits_by_name
@@ -164,7 +164,7 @@ def _with_those_of_limits(evaluated: EvaluatedValues, criterion: Criterion) -> s
 
 
 def estimate_of(evaluated: EvaluatedValues, name: str) -> Estimate | Absent:
-    """Return the value of an input or output with its error, or why it is missing."""
+    """Return the value of an input or output with its error, or the reason why it is missing."""
     estimate = evaluated.estimates.get(name)
     if estimate is None:
         find = _estimate_of_output if name in evaluated.computed else _estimate_of_input
@@ -249,7 +249,7 @@ def _estimate_of_output(evaluated: EvaluatedValues, name: str) -> Estimate | Abs
 
 
 def _where_it_has_a_scale(error: Any, scale: Value) -> tuple[Any, Value | None]:
-    """Return an error with NaN at points without a reference value, and the reference value."""
+    """Return the error and its reference value; the error is NaN at points without a reference value."""
     if not np.ndim(scale):
         return float("nan"), None
     return np.where(np.isnan(scale), np.nan, error), scale
@@ -259,8 +259,8 @@ def _scale(evaluated: EvaluatedValues, name: str) -> Value | None:
     """Return the reference value of an output's relative error [SI]; None if it is the output itself.
 
     For several reference outputs, such as the four stiffnesses, the largest counts, enlarged to the largest
-    true value that their own errors allow. NaN means that the reference quantity is not an output. The error
-    of an angle is relative to 90°.
+    true value that its own error allows. NaN means that the reference quantity is not an output. The error of
+    an angle is relative to 90°.
     """
     table = evaluated.measured.content.get("relative_to", {}) if evaluated.measured else {}
     if name not in table:
@@ -276,7 +276,7 @@ def _scale(evaluated: EvaluatedValues, name: str) -> Value | None:
 
 
 def _absent(template: Template, formula: Formula[Any], reason: str | None) -> Absent:
-    """Return why an output is missing: the optional inputs to give, or the output's own reason."""
+    """Return the reason why an output is missing: the optional inputs to give, or its own reason."""
     missing = sorted(template.ledger.missing & template.ancestors(formula.attribute))
     give = tuple(template.declarations[attribute].name for attribute in missing)
     return Absent(give, reason or absence(template, formula))
@@ -285,8 +285,7 @@ def _absent(template: Template, formula: Formula[Any], reason: str | None) -> Ab
 def error_of(evaluated: EvaluatedValues, name: str) -> Any:
     """Return the relative error of an output; NaN if it is unknown.
 
-    No error is stated by a template without measured errors, nor by a template without levels whose table
-    does not contain the output.
+    The error is unknown if the template has no measured errors, or has no levels and no entry for the output.
     """
     error, table = evaluated.errors.get(name), evaluated.measured
     if error is None or table is None or not (evaluated.template.levels or name in table.outputs):
@@ -295,7 +294,7 @@ def error_of(evaluated: EvaluatedValues, name: str) -> Any:
 
 
 def along_of(template: Template, names: Iterable[str]) -> Along | None:
-    """Return the places along the first curve among some names, if there is one."""
+    """Return the places along the first curve among the given names, if there is one."""
     for name in names:
         curve = template.formulas.get(name)
         if isinstance(curve, Profile) and curve.axes == 1:

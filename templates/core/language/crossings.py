@@ -71,7 +71,7 @@ def meetings(curve: SampledCurve, samples: Samples) -> Crossings:
 
 
 def _exact(samples: Samples) -> Iterator[Place]:
-    """Yield samples that equal the target exactly; of consecutive ones, the first."""
+    """Yield samples that equal the target exactly; of consecutive ones only the first."""
     zero = np.flatnonzero(samples.miss == 0)
     for run in np.split(zero, np.flatnonzero(np.diff(zero) > 1) + 1):
         if run.size:

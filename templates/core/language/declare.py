@@ -42,7 +42,10 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 def _meaning(unit_text: str, words: str, **keywords: Unpack[Keywords]) -> Meaning:
-    """Return the meaning of a result. In K it is a temperature; differences are declared in delta_degC."""
+    """Return the meaning of a result.
+
+    A result in K is a temperature; temperature differences are declared in delta_degC.
+    """
     meant = meaning(unit_text, words, **keywords)
     return replace(meant, read_as="degC") if unit_text == "K" else meant
 
@@ -85,7 +88,7 @@ def curve(
     unit: str, words: str, *, default: Any = None, constant: bool = False, along: str = "cycle",
     optional: bool = False, alternative: bool = False, **keywords: Unpack[Keywords],
 ) -> Any:  # fmt: skip
-    """Declare an input that is an array along the crank angle (last axis), or a single value if `constant`.
+    """Declare an input that is an array over the crank angle (last axis), or a single value if `constant`.
 
     `along` names another axis, such as `inertias`. Missing optional curves are NaN, as with `given`.
     """
@@ -158,8 +161,8 @@ def require(
     """Declare a rule between the inputs `names`; its docstring is the sentence that a user reads.
 
     The rule is skipped if an optional input that it uses is missing, unless the rule is about a `missing`
-    input. A rule with a `warning` code refuses nothing: the answer contains a warning with the comparisons
-    that are false.
+    input. If the rule has a `warning` code, it refuses nothing; the answer then contains a warning with the
+    false comparisons.
     """
     return lambda function: Requirement(function, names, remedy, missing, warning)
 
@@ -171,7 +174,7 @@ def units(
 
     This is for functions that are not dimensionally consistent inside, such as Walther's `nu + 0.7`: the
     dimension test of the whole catalogue checks calls at this boundary. The units must be SI or pure numbers,
-    so no conversion is needed in the hot path. None marks an argument that is no quantity: a word, or a
+    so no conversion is needed in the hot path. None marks an argument that is not a quantity: a word, or a
     record that several formulas share.
 
     Raises
@@ -193,7 +196,7 @@ def units(
 
 
 def on_paper(words: str | Mapping[str, str]) -> Callable[[F], F]:
-    """Declare a description for reports of how a physics function computes a result without a formula.
+    """Declare how reports describe the method of a physics function whose result has no formula.
 
     If the method depends on the level, `words` maps each level to its description.
     """

@@ -46,9 +46,10 @@ def _check_defaults(criterion: Criterion, inputs: Mapping[str, Input]) -> None:
 def meanings_of(
     inputs: Mapping[str, Input], formulas: Mapping[str, Formula[Any]]
 ) -> dict[str, NameDescription]:
-    """Return unit and label of each name that a criterion may use, without texts, choices and tables.
+    """Return the unit and label of each name that a criterion may use; texts, choices and tables are omitted.
 
-    The author of a template knows that a speed is in rad/s, so no second reading of a criterion is reported.
+    A second reading of a speed is not reported here, because the author of a template knows that it is in
+    rad/s.
     """
     declared = {**inputs, **formulas}
     return {

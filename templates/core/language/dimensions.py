@@ -82,7 +82,7 @@ def _fault_of_rule(template: Template, rule: Requirement) -> str | None:
 
 
 def _applied(template: Template, function: Callable[..., Any]) -> Any:
-    """Return the result of a template's function with quantities in place of attributes."""
+    """Return the result of a template's function, called with quantities in place of attributes."""
     values = {name: _quantity(template, name) for name in attributes_used(function)}
     return rebound(function, {})(_Record(values))
 
@@ -105,7 +105,7 @@ def _quantity(template: Template, name: str) -> Any:
 
 
 def _magnitude(result: Any, declared: str) -> Any:
-    """Return the SI magnitude of a result, or None if it is not of the declared kind."""
+    """Return the SI magnitude of a result; None if the result is not of the declared kind."""
     wanted = unit(declared).base
     quantity = result if isinstance(result, pint.Quantity) else registry.Quantity(result, "")
     if quantity.dimensionality != registry.get_dimensionality(wanted):
@@ -118,7 +118,7 @@ def _units(result: Any) -> str:
 
 
 def rebound(function: Callable[..., Any], copies: dict[Any, Any]) -> Callable[..., Any]:
-    """Return the same function in a scope where every physics function checks its arguments."""
+    """Return the same function in a scope in which every physics function checks its arguments."""
     if function in copies:
         return copies[function]
     if hasattr(function, "border"):

@@ -87,8 +87,8 @@ def evaluate(
     """Evaluate the named outputs (all, if None) for inputs as a user types them.
 
     `units` gives other units for outputs. Arrays of inputs give arrays of outputs. With a `tolerance` one
-    level serves all points, unless `per_point` requests the cheapest level at each point. `limits` are those
-    that the template's criteria expect from the user; criteria are judged only if `judge` is true.
+    level serves all points, unless `per_point` requests the cheapest level at each point. `limits` are the
+    limits that the template's criteria expect from the user; criteria are judged only if `judge` is true.
 
     Raises
     ------
@@ -209,7 +209,7 @@ def _answers(template: Template, names: list[str], shown_in: Mapping[str, Unit])
 def _words(template: Template, formula: Text[Any], value: Any) -> Answer:
     """Return an answer that is text.
 
-    An empty text means that there is none; points that are masked upstream have none either.
+    An empty text means that there is no answer; points that are masked upstream have none either.
     """
     why = absence(template, formula) or "there is nothing to tell here"
     if isinstance(value, str):
@@ -231,8 +231,8 @@ def _with_reasons(
 ) -> tuple[Array, NDArray[np.object_] | None]:
     """Return the values with NaN where an upstream mask applies, and the reason for each NaN.
 
-    A profile has one reason as a whole. If several reasons apply, an invalid upstream value takes precedence
-    over one that is merely absent.
+    A profile has a single reason. If several reasons apply, an invalid upstream value takes precedence over
+    one that is merely absent.
     """
     beneath = template.depends_on(formula.attribute)
     profile = formula if isinstance(formula, Profile) else None
@@ -266,7 +266,7 @@ def is_reported(template: Template, declared: Input) -> bool:
 
 
 def echoes_of(template: Template) -> dict[str, UsedInput]:
-    """Return the inputs as they were used: the given ones, and the defaults that an answer lists."""
+    """Return the inputs as the calculation used them: given ones, and defaults that an answer lists."""
     echoes, given = {}, template.ledger.typed
     for name, declared in template.inputs.items():
         typed = given.get(name)
@@ -280,7 +280,7 @@ def echoes_of(template: Template) -> dict[str, UsedInput]:
 
 
 def _echo(template: Template, declared: Input, typed: str | None) -> UsedInput:
-    """Return the used value of an input that is a choice, or whose default is a formula."""
+    """Return the value that was used for an input that is a choice, or whose default is a formula."""
     value = getattr(template, declared.attribute)
     source = "default" if typed is None else "given"
     return (
@@ -313,7 +313,7 @@ def _with_nulls(shown: Array) -> list[Any]:
 def _standing(cls: type[Template], given: Mapping[str, Any]) -> list[Notice]:
     """Return the warnings that apply to every calculation with these inputs.
 
-    They concern the version and the tolerances.
+    They are about the version and about tolerances.
     """
     noted = tolerances.unused(given)
     if cls.withdrawn:
@@ -369,7 +369,7 @@ def criterion_warnings(
 
 
 def _noticed(rungs: list[Rung]) -> list[Notice]:
-    """Return the warnings of all levels, each once."""
+    """Return the warnings of all levels, without repetition."""
     noticed = (notice for rung in rungs for notice in rung.template.ledger.warnings)
     return list(dict.fromkeys([*noticed, *(notice for rung in rungs for notice in remarks(rung.template))]))
 
@@ -403,7 +403,7 @@ def _stated(cls: type[Calculation], outputs: frozenset[str], given: frozenset[st
 
 
 def _beneath(cls: type[Calculation], outputs: Iterable[str], given: Collection[str]) -> Iterator[str]:
-    """Yield the attributes on which the outputs depend; a given input depends on nothing."""
+    """Yield the attributes on which the outputs depend; a given input depends on no other attribute."""
     waiting = [cls.formulas[name].attribute for name in outputs]
     seen = set(waiting)
     while waiting:
@@ -417,7 +417,7 @@ def _beneath(cls: type[Calculation], outputs: Iterable[str], given: Collection[s
 
 
 def _limits(cls: type[Calculation], criteria: Sequence[Judgement]) -> list[Assumption]:
-    """Return the limits that a template provides where the user gave none."""
+    """Return the limits that a template provides where the user has given none."""
     open_values = {one.sides[0] for one in criteria if one.verdict == "not_checked"}
     if not open_values:
         return []

@@ -241,7 +241,7 @@ def plain_text(declared: Input, text: str) -> PlainText | None:
 
 
 def _plain_value(declared: Input, typed: TypedQuantity) -> np.float64 | None:
-    """Return a single number within its bounds and its published range, else None."""
+    """Return a single number within its bounds and its published range, otherwise None."""
     si, bounds = typed.si, declared.plain
     if bounds and isinstance(si, float) and typed.tolerance is None and bounds[0] <= si <= bounds[1]:
         value = np.float64(si)
@@ -279,7 +279,7 @@ def _bounded(declared: Input, typed: TypedQuantity) -> tuple[Any, Fault | Mask |
 
 
 def _end_outside(declared: Declaration, si: Value, tolerance: Tolerance) -> Fault | None:
-    """Return a fault if the tolerance of a single value extends beyond its bounds."""
+    """Return a fault if the tolerance of a single value extends beyond the bounds of the input."""
     ends = (si + tolerance.lower, si + tolerance.upper)
     outside = next((end for end in ends if not declared.meaning.admits(end)), None)
     if outside is None:
@@ -291,7 +291,7 @@ def _end_outside(declared: Declaration, si: Value, tolerance: Tolerance) -> Faul
 
 
 def _along_a_cycle(declared: Curve, typed: TypedQuantity) -> tuple[Any, Fault | None]:
-    """Check a curve as a whole: one point outside its domain refuses it."""
+    """Check a curve as a whole: a single point outside the domain refuses the curve."""
     meaning, value = declared.meaning, typed.si
     if not isinstance(value, np.ndarray):
         detail = f"{meaning.words} is a curve: give an array over the {declared.along}, in {meaning.unit}"
@@ -332,7 +332,7 @@ def _masked_points(
 
 
 def as_typed(cls: type[Calculation], name: str, value: Any) -> Any:
-    """Return an SI value as if it had been typed in the declared unit."""
+    """Return an SI value in the form in which a user would type it, in the declared unit."""
     declared = cls.inputs.get(name)
     if declared is None or isinstance(declared, Choice):
         return value
@@ -346,7 +346,7 @@ def as_typed(cls: type[Calculation], name: str, value: Any) -> Any:
 def check_shapes(self: Calculation) -> None:
     """Raise an error if arrays of points do not broadcast together, or if curves have different lengths.
 
-    A list of one value is equivalent to a number only for a curve that may be constant.
+    Only a curve that may be constant accepts a list of one value in place of a number.
 
     Raises
     ------
@@ -387,7 +387,7 @@ def is_single(declared: Declaration) -> bool:
 
 
 def is_curve(self: Calculation, attribute: str) -> bool:
-    """Return whether an attribute is an input along the crank angle."""
+    """Return whether an attribute is an input over the crank angle."""
     return isinstance(self.declarations[attribute], Curve)
 
 

@@ -39,7 +39,7 @@ def climb(
 ) -> Iterator[Rung]:
     """Yield the levels for a request with a tolerance: one for all points, or several if `per_point`.
 
-    The level is the cheapest whose errors are within the tolerance for all outputs, else the finest within
+    The level is the cheapest whose errors are within the tolerance for all outputs, or else the finest within
     the budget. Outputs without a value are ignored.
     """
     names = [name for name in outputs if not isinstance(template.formulas[name], Text)]
@@ -70,7 +70,7 @@ def states_any(cls: type[Template], level: str) -> bool:
 
 
 def is_affordable(cls: type[Template], level: str, points: int) -> bool:
-    """Return whether a level accepts a number of points at once, at a stated cost within the budget.
+    """Return whether a level accepts this number of points at once, at a stated cost within the budget.
 
     A level without a stated cost is affordable if it states an error.
     """
@@ -148,7 +148,7 @@ class _Search:
                 yield level
 
     def _answers(self, level: str) -> bool:
-        """Return whether a level accepts these inputs."""
+        """Return whether a level can calculate these inputs."""
         try:
             rung = self.at(level)
             for name in self.names:
@@ -194,7 +194,7 @@ class _Search:
         return met
 
     def _wanted(self, rung: Template, name: str, where: Mask | None) -> Mask:
-        """Return a mask of where an output has a value at the starting level, shaped as a rung's points."""
+        """Return a mask of the points where an output has a value at the starting level, in their shape."""
         if rung.level == self.start:
             return np.zeros((), dtype=bool)
         try:

@@ -57,7 +57,7 @@ class Condition:
     def added(self, template: Template, output: str) -> float:
         """Return the error that the condition adds to an output.
 
-        It is 0 if the output does not depend on these inputs, NaN if it was not measured.
+        It is 0 if the output does not depend on these inputs, and NaN if the error was not measured.
         """
         beneath = template.dependencies(template.formulas[output].attribute)
         if beneath.isdisjoint(template.inputs[name].attribute for name in self.inputs):
@@ -83,7 +83,7 @@ class Accuracy:
         return {case: _tables(levels) for case, levels in self.content.get("cases", {}).items()}
 
     def own(self, level: str) -> Mapping[str, float]:
-        """Return the expected error by output for a level that computes the error of each answer itself."""
+        """Return the expected error, by output, of a level that computes the error of each answer itself."""
         of_level: Mapping[str, Mapping[str, float]] = self.content.get("levels", {}).get(level, {})
         return of_level.get("own", {})
 
@@ -156,8 +156,8 @@ class Accuracy:
     def seconds(self, template: Template, level: str) -> float | None:
         """Return the expected processor time of all points at a level [s]; None if the table states none.
 
-        `expected_seconds` of the table gives the time of one point by level and case: one number, or one in
-        each cell of `grids` over the axes.
+        `expected_seconds` of the table gives the time of one point by level and case: a single number, or one
+        for each cell of `grids` over the axes.
         """
         by_level = self.content.get("expected_seconds", {}).get(level, {})
         stated = by_level.get("cases", {}).get(template.measured_case() if self.cases else "")
@@ -184,7 +184,7 @@ class Accuracy:
         )
 
     def _cell(self, template: Template) -> tuple[Any, Any, Any]:
-        """Return row and column of the cell of each point, and whether the point lies within the grid."""
+        """Return the row and column of the cell of each point, and whether the point lies within the grid."""
         first, second = (getattr(template, axis) for axis in self.axes)
         if isinstance(first, float) and isinstance(second, float):  # NumPy would take ten times as long
             row, in_rows = _place(self._edges[0], first)
@@ -201,7 +201,7 @@ class Accuracy:
 
 
 def _same_at_all_levels(template: Template, output: str) -> bool:
-    """Return whether an output, which is not text, has the same value at every level."""
+    """Return whether an output that is not text has the same value at every level."""
     formula = template.formulas[output]
     if isinstance(formula, Text):
         return False

@@ -28,7 +28,7 @@ class Bounds:
     le: float | None = None
 
     def in_si(self, scale: Unit) -> Bounds:
-        """Return the same bounds in SI."""
+        """Return these bounds converted to SI."""
         limits = (getattr(self, side) for side, _ in _RELATIONS)
         return Bounds(*(None if limit is None else float(scale.to_si(limit)) for limit in limits))
 
@@ -95,7 +95,7 @@ class Meaning:
     read_as: str | None = None
 
     def at(self, level: str) -> Meaning:
-        """Return the meaning of the number at a level of fidelity, which may have its own bounds."""
+        """Return the meaning of the number at one level of fidelity, which may have its own bounds."""
         return self._at_levels.get(level, self) if self.per_level else self
 
     @cached_property

@@ -130,5 +130,5 @@ def _is_array(value: Any) -> bool:
 
 
 def typed_values(declared: Input, si: Value) -> TypedQuantity:
-    """Return values of the unknown [SI] as if they had been typed."""
+    """Return values of the unknown [SI] in the form in which a user would type them."""
     return TypedQuantity(None, declared.meaning.unit, si, {})

@@ -37,7 +37,7 @@ class Record:
 
 
 def record(template: Template) -> Record:
-    """Return a record of every declared value that the template has so far."""
+    """Return a record of every declared value that the template has calculated so far."""
     record = Record()
     declared, handed = template.declarations, template.ledger.handed
     for attribute, value in vars(template).items():

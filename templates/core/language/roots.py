@@ -68,7 +68,7 @@ class Roots:
 
 
 def roots_of(requested: SampledCurve, cheap: SampledCurve, bounds: tuple[float, float]) -> Roots:
-    """Return every solution between bounds [SI], scanned on the cheap and confirmed on the requested curve.
+    """Return every solution between bounds [SI], found on the cheap curve and confirmed on the requested one.
 
     Raises
     ------
@@ -121,7 +121,7 @@ def _at_bounds(curve: SampledCurve, roots: list[Root], bounds: tuple[float, floa
 
 
 def _moved_away(scanned: SampledCurve, samples: Samples, level: str | None) -> Unreachable:
-    """Return the error if the requested level has none of the scanned solutions between the bounds."""
+    """Return the error to raise if the requested level confirms no solution of the scan."""
     error = scanned.unreachable(samples)
     there = scanned.level
     detail = (
@@ -164,9 +164,10 @@ def _finer(
 
 
 def _confirming(curve: SampledCurve, even: Samples, roots: Sequence[Root]) -> Samples:
-    """Return a finer curve: at all samples of the scan or a few near solutions, and the solutions.
+    """Return a finer curve, with the solutions among its samples.
 
-    Samples that the level refuses are left out.
+    It has all samples of the scan, or only a few near the solutions. Samples that the level refuses are
+    omitted.
     """
     x = np.asarray(curve.x.scale.to_si(np.array([root.value for root in roots])))
     output = np.asarray(curve.y.scale.to_si(np.array([root.output for root in roots])))
@@ -179,7 +180,7 @@ def _confirming(curve: SampledCurve, even: Samples, roots: Sequence[Root]) -> Sa
 
 
 def _beside(even: Array, places: Array) -> NDArray[np.intp]:
-    """Return the samples a number of steps to either side of some places."""
+    """Return the samples that lie a given number of steps on either side of the given places."""
     nearest = np.searchsorted(even, places)
     return np.unique(np.clip(np.concatenate([nearest - BESIDE, nearest + BESIDE]), 0, even.size - 1))
 

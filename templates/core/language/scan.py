@@ -41,18 +41,18 @@ class Samples:
     reasons: NDArray[np.object_]
 
     def joined(self, other: Samples) -> Samples:
-        """Return both sets of samples in ascending order, each value of the unknown once."""
+        """Return both sets of samples in ascending order, with each value of the unknown only once."""
         x = np.concatenate([self.x, other.x])
         x, first = np.unique(x, return_index=True)
         miss, reasons = (np.concatenate([getattr(self, n), getattr(other, n)]) for n in ("miss", "reasons"))
         return Samples(x, miss[first], reasons[first])
 
     def crossings(self) -> NDArray[np.intp]:
-        """Return the indices of samples after which the output crosses the target before the next."""
+        """Return the indices of samples between which and the next sample the output crosses the target."""
         return np.flatnonzero(np.sign(self.miss[:-1]) * np.sign(self.miss[1:]) < 0)
 
     def beside(self) -> NDArray[np.intp]:
-        """Return the indices of the samples after which the output is nearer to the target than its step.
+        """Return the indices of samples that are nearer to the target than the output's step to the next.
 
         The output may jump across the target there.
         """
@@ -150,7 +150,7 @@ class SampledCurve(ABC):
         return self.miss_of(self.outputs(np.array([value])))
 
     def miss_of(self, outputs: Outputs) -> float:
-        """Return output minus target [SI] for already computed outputs at one value; NaN without a value."""
+        """Return output minus target [SI] at one value, from computed outputs; NaN without a value."""
         return float(outputs.values[0]) - self.wanted
 
     def scan(self, low: float, high: float) -> tuple[Self, Samples, Samples]:
@@ -249,7 +249,7 @@ def _magnitude(raw: Any) -> Any:
 
 
 def _reasons(answer: Answer, count: int) -> NDArray[np.object_]:
-    """Return why values are missing at the points; None where they exist."""
+    """Return the reasons why values are missing at the points; None where they exist."""
     if answer.reasons is not None:
         return np.broadcast_to(answer.reasons, (count,))
     return np.full(count, answer.reason, dtype=object)
@@ -266,12 +266,12 @@ def evenly(low: float, high: float, count: int = SAMPLES) -> Array:
 
 
 def _inside(low: float, high: float) -> Array:
-    """Return the points that divide an interval, without its ends."""
+    """Return the points that divide an interval, without the ends of the interval."""
     return np.linspace(low, high, PARTS + 1)[1:-1]
 
 
 def _divided(samples: Samples, turn: int) -> NDArray[np.intp]:
-    """Return the intervals to divide, each by the sample before it; the number of each kind is limited."""
+    """Return the intervals to divide, each by the sample before it, with a limited number of each kind."""
     crossed = samples.beside()[:CROSSINGS] if turn < CROSSED else np.empty(0, dtype=np.intp)
     near = samples.nearest()
     near = near[np.argsort(np.abs(samples.miss[near]), kind="stable")][:EXTREMA]

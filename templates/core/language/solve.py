@@ -54,7 +54,7 @@ def solve(
     target: Mapping[str, Any],
     **options: Any,
 ) -> Solution:
-    """Find the values of `unknown` within `bounds` for which the one output in `target` has its wanted value.
+    """Find the values of `unknown` within `bounds` for which the one output in `target` has the target value.
 
     `options` are passed to `evaluate`. If there are several solutions, `unknown` of the result is the lowest,
     and a warning names the others.
@@ -90,7 +90,7 @@ def solve(
 def _cheap(cls: type[Template], fidelity: dict[str, Any]) -> dict[str, Any]:
     """Return the fidelity of the scan.
 
-    It is the requested one, or the default level if the requested level accepts only few points.
+    It is the requested one, or the default level if the requested level accepts only a few points.
     """
     if not cls.most_points or ((level := fidelity.get("level")) and level not in cls.most_points):
         return fidelity

@@ -146,7 +146,7 @@ class Formula(Declaration, Generic[T]):
 
     @cached_property
     def uses_as_given(self) -> tuple[str, ...]:
-        """Return the inputs that the formula reads as given, without the formula of their default."""
+        """Return the inputs whose typed values the formula reads, even where they have a default formula."""
         return inputs_read_as_given(self.function)
 
 

@@ -29,7 +29,7 @@ def parse(source: str) -> ast.Module:
 
 
 def lines_of(cls: type) -> tuple[list[str], int]:
-    """Return the source lines of a class and the number of the first, which `inspect` finds in a tree.
+    """Return the source lines of a class and the number of the first line, which `inspect` finds in a tree.
 
     Raises
     ------
@@ -41,7 +41,7 @@ def lines_of(cls: type) -> tuple[list[str], int]:
 
 
 def _unlock_in_child() -> None:
-    """Release the lock in a forked process, whose copy of the lock may belong to a thread of the parent."""
+    """Release the lock in a forked process, because a thread of the parent may have held it at the fork."""
     global _ONE_AT_A_TIME
     _ONE_AT_A_TIME = threading.RLock()
 

@@ -120,8 +120,8 @@ class Template(Calculation):
     def from_quantities(cls, raw: Mapping[str, Any], pending: Collection[str] = ()) -> Self:
         """Return a template from typed inputs: read them, convert them to SI, and check them.
 
-        This happens once, before any formula is evaluated. Inputs in `pending` will be given later: they are
-        not required yet, and rules that depend on them are not checked.
+        This happens once, before any formula is evaluated. Inputs in `pending` follow later: they are not
+        required yet, and rules that depend on them are not checked.
 
         Raises
         ------
@@ -143,7 +143,7 @@ class Template(Calculation):
     def at(self, level: str, where: NDArray[np.bool_] | None = None) -> Self:
         """Return a template with the same inputs at another level.
 
-        If `where` is given, only the points of arrays where it is true are included.
+        If `where` is given, it includes only the points of arrays for which `where` is true.
         """
         names = (declared.attribute for declared in self.inputs.values())
         values = {name: vars(self)[name] for name in names if name in self.ledger.handed}
@@ -169,15 +169,15 @@ class Template(Calculation):
         return True
 
     def measured_case(self) -> str:
-        """Return the case of these inputs, for templates whose errors were measured for several cases."""
+        """Return the name of the case of these inputs, if errors were measured for several cases."""
         return ""
 
     def states_own_errors(self) -> bool:
-        """Return whether the level's own error estimate replaces measured errors for these inputs."""
+        """Return whether the level's own error estimate replaces the measured errors for these inputs."""
         return True
 
     def own_error(self, output: str) -> Array:
-        """Return the relative error of an output by the level's own estimate [-]; NaN without one."""
+        """Return the level's own estimate of the relative error of an output [-]; NaN if it makes none."""
         return np.full(self.shape_of_points(), np.nan)[()]
 
     def starting_level(self) -> str:
@@ -186,7 +186,7 @@ class Template(Calculation):
         return self.default_level if self.default_level in ladder else ladder[-1]
 
     def _own_masks(self) -> list[Mask]:
-        """Return the masks of inputs; masks of formulas are recalculated at the new level."""
+        """Return the masks of inputs; those of formulas are omitted, because they are recalculated."""
         inputs = {declared.attribute for declared in self.inputs.values()}
         return [mask for mask in self.ledger.masks if inputs.issuperset(mask.names)]
 
@@ -203,7 +203,7 @@ class Template(Calculation):
 
     @classmethod
     def _kept(cls, self: Self, pending: Collection[str]) -> Self:
-        """Return the template if it satisfies its rules, else raise `InvalidInputs`."""
+        """Return the template if it satisfies its rules; otherwise raise `InvalidInputs`."""
         with np.errstate(all="ignore"):
             faults = violations(self, cls._due(pending) if pending else cls.requirements)
         if faults:
@@ -228,7 +228,7 @@ class Template(Calculation):
             return {name: getattr(self, declared.attribute) for name, declared in self.inputs.items()}
 
     def admit(self, declaration: Formula[Any], value: Any) -> Any:
-        """Return a checked result of a formula: refuse a point, mask points of an array, or warn."""
+        """Check the result of a formula and return it: refuse a point, mask points of an array, or warn."""
         meaning = declaration.meaning
         if meaning.per_level:
             meaning = meaning.at(self.level)

@@ -17,7 +17,7 @@ DETAIL = (
 
 
 def unused(given: Mapping[str, Any]) -> Iterator[Notice]:
-    """Yield a warning for every typed or read quantity that has a tolerance."""
+    """Yield a warning for every quantity with a tolerance, whether a user typed it or the service read it."""
     for name, value in given.items():
         if value.tolerance if isinstance(value, TypedQuantity) else is_toleranced(value):
             yield Notice(UNUSED, name, DETAIL)

@@ -28,7 +28,7 @@ _ATTRIBUTE = re.compile(r"\bself\.(\w+)")
 
 
 def violation(template: Calculation, rule: Requirement, name: str) -> str:
-    """Return a sentence on a broken rule, for a warning about one of its names."""
+    """Return a sentence about a broken rule, for a warning about one of its names."""
     if stated := stated_case(template, rule):
         return stated
     if rule.warning == UNUSED:
@@ -44,14 +44,14 @@ def required(rule: Requirement) -> str:
 
 
 def stated_case(template: Calculation, rule: Requirement) -> str:
-    """Return the false comparisons in words with their numbers; empty if one has no words."""
+    """Return the false comparisons in words with their numbers; empty if one cannot be put into words."""
     with np.errstate(all="ignore"):
         written = [_written(template, one) for one in _broken(outcome(template, rule))]
     return "; ".join(written) if all(written) else ""
 
 
 def relations(template: Calculation, rule: Requirement) -> list[tuple[NDArray[np.bool_], str]]:
-    """Return each false comparison in words with the points where it is false; empty if one has no words."""
+    """Return each false comparison in words with its points; empty if one cannot be put into words."""
     with np.errstate(all="ignore"):
         broken = list(_broken(outcome(template, rule)))
     written = [(np.asarray(one.where), _related(template, one)) for one in broken]
@@ -59,7 +59,7 @@ def relations(template: Calculation, rule: Requirement) -> list[tuple[NDArray[np
 
 
 def _related(template: Calculation, comparison: Comparison) -> str:
-    """Return a false comparison in words, with no numbers except those in the rule; empty without words."""
+    """Return a false comparison in words, with no numbers except those in the rule; empty if impossible."""
     sides = comparison.left, comparison.right
     scale = _common_scale(template, comparison)
     words = [
@@ -95,7 +95,7 @@ def _broken(result: Outcome, where: Truth = True) -> Iterator[Comparison]:
 
 
 def _written(template: Calculation, comparison: Comparison) -> str:
-    """Return a false comparison at its worst point; empty if it has no words."""
+    """Return a false comparison at its worst point; empty if it cannot be put into words."""
     left, right = comparison.left, comparison.right
     scale = _common_scale(template, comparison)
     if scale is None:
@@ -128,7 +128,7 @@ def _scale(template: Calculation, side: Operand) -> Unit | None:
 
 
 def _number_of(left: Operand, right: Operand) -> Unit | None:
-    """Return the unit 1 if one side is a constant large enough to need no unit, else None."""
+    """Return the unit 1 if one side is a constant so large that it needs no unit, otherwise None."""
     constants = [side.constant for side in (left, right) if side.constant is not None]
     return unit("1") if any(abs(one) >= 1e-2 for one in constants) else None
 

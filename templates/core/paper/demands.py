@@ -9,7 +9,7 @@ from templates.core.language.template import Template
 
 
 def described_criteria(cls: type[Template]) -> list[dict[str, Any]]:
-    """Return the description of every criterion in the order of the class, with the limits of its user."""
+    """Return the description of every criterion in the order of the class, with the user's limits."""
     return [_criterion(criterion) for criterion in cls.declared_criteria]
 
 
@@ -26,7 +26,7 @@ def _criterion(criterion: Criterion) -> dict[str, Any]:
 
 
 def described_limit(limit: Limit) -> dict[str, Any]:
-    """Return a description of a limit that the user of a template gives, with its default as a formula."""
+    """Return a description of a limit that the user of a template sets, with its default as a formula."""
     default = None if limit.default is None else f"{limit.default[0]}({limit.default[1]})"
     return {
         "name": limit.name,

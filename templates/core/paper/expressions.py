@@ -70,7 +70,7 @@ def relation_latex(raw: object) -> str:
     """Return the LaTeX of a relation as typed.
 
     The result is empty for a single name, a list of relations, text that is not a relation, and a relation
-    nested too deeply to be readable.
+    that is nested too deeply to be readable.
     """
     try:
         relation = parse(str(raw)) if is_relation(raw) else None
@@ -78,7 +78,9 @@ def relation_latex(raw: object) -> str:
         return ""
     if relation is None or relation.only_name or depth_of(relation.tree) > DEEPEST_ON_PAPER:
         return ""
-    return latex(relation.tree, {})
+    written = latex(relation.calculated.tree, {})
+    rule = relation.rounding.words if relation.rounding else ""
+    return rf"{written}\quad {_words(rule.translate(_NO_LATEX))}" if rule else written
 
 
 class _Writer:
@@ -188,5 +190,5 @@ def _roman(name: str) -> str:
 
 
 def _words(text: str) -> str:
-    """Return a text in upright letters, with percent signs outside it, where they do not begin a comment."""
+    """Return the LaTeX of a text in upright letters, with its percent signs escaped."""
     return r"\%".join(rf"\text{{{part}}}" if part else "" for part in text.split("%"))

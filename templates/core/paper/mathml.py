@@ -40,7 +40,7 @@ _FUNCTIONS = {"log10": r"\lg", "log": r"\ln", "exp": r"\exp", "sin": r"\sin", "c
 
 
 def symbol(declared: Declaration) -> str:
-    r"""Return the printed symbol: the declared one, else one from the attribute, as `nu_1` → `\nu_{1}`."""
+    r"""Return the printed symbol: the declared one, or one from the attribute, `\nu_{1}` for `nu_1`."""
     return declared.meaning.symbol or named_symbol(declared.attribute)
 
 
@@ -181,7 +181,7 @@ class Writer:
         return self._physics(name, [self.write(argument) for argument in node.args])
 
     def _physics(self, name: str, arguments: list[Written]) -> Written:
-        """Return the LaTeX of a physics function: declared, expanded, or a call by its name."""
+        """Return the LaTeX of a physics function: as declared, as expanded, or as a call by its name."""
         function = self.scope.get(name)
         latex = getattr(function, "latex", None)
         if latex:
@@ -201,7 +201,7 @@ class Writer:
         return shown.format(*(text for text, _ in arguments))
 
     def _written_out(self, function: Callable[..., Any], arguments: list[Written]) -> Written | None:
-        """Return the expression that a function returns if it does nothing else and can be printed."""
+        """Return the expression that a function returns, if it does nothing else and can be printed."""
         try:
             body, parameters = returned(function), syntax(function).args.args
             names = dict(zip((p.arg for p in parameters), arguments, strict=True))

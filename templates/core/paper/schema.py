@@ -27,7 +27,7 @@ from templates.core.language.template import Template
 from templates.core.paper.demands import described_criteria, described_limit
 from templates.core.paper.mathml import expression, mathml, symbol, symbols
 from templates.core.paper.methods import right_side
-from templates.core.units.tolerance import DISTRIBUTIONS
+from templates.core.units.tolerance import DISTRIBUTIONS, STATE_IN_TABLE
 
 _KEYWORDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", "le": "maximum"}
 
@@ -58,7 +58,7 @@ def describe(cls: type[Template]) -> dict[str, Any]:
 
 
 def inputs_schema(cls: type[Template]) -> dict[str, Any]:
-    """Return the JSON Schema of the object `inputs`; bounds are in the unit named beside them."""
+    """Return the JSON Schema of the object `inputs`; bounds are in the unit that stands beside them."""
     return {
         "type": "object",
         "additionalProperties": False,
@@ -70,7 +70,7 @@ def inputs_schema(cls: type[Template]) -> dict[str, Any]:
 def limits_schema(cls: type[Template]) -> dict[str, Any]:
     """Return the JSON Schema of the object `limits`, which the criteria use and the calculation does not.
 
-    A choice from the library comes first, before all limits; a limit filled from its rows names it in `from`.
+    A choice from the library comes before all limits; a limit that its rows can fill names it in `from`.
     """
     limits = {limit.name: limit for criterion in cls.declared_criteria for limit in criterion.limits}
     rows = dict.fromkeys(limit.library for limit in limits.values() if limit.library)
@@ -149,6 +149,7 @@ def _quantity_in(declared: Declaration) -> dict[str, Any]:
             **{key: {"type": ["string", "number"]} for key in ("plus", "minus", "upper", "lower")},
             "zone": {"type": "string"},
             "distribution": {"enum": list(DISTRIBUTIONS)},
+            STATE_IN_TABLE: {"type": "boolean"},
         },
     }
     bare = [{"type": "number"}] if declared.meaning.unit == "1" and not listed else []

@@ -50,7 +50,7 @@ class Check:
 
 
 def checks(template: Template) -> Iterator[Check]:
-    """Yield a check for each bound other than a mere sign, and for each rule, whose values are calculated."""
+    """Yield a check for each rule and for each bound that is more than a sign, if its values exist."""
     for declared in template.declarations.values():
         value = vars(template).get(declared.attribute)
         if isinstance(value, (float, np.ndarray)) and _has_number(value):
@@ -104,14 +104,14 @@ def _demanded(letter: str, bounds: Bounds, unit: str) -> str:
 
 
 def _share_of(bounds: Bounds, value: Any) -> float | None:
-    """Return the larger ratio of a value to its upper limit or of its lower limit to the value."""
+    """Return the larger of two ratios: value over upper limit, and lower limit over value."""
     highs = [worst_share(value, limit) for limit in (bounds.lt, bounds.le) if limit is not None]
     lows = [worst_share(limit, value) for limit in (bounds.gt, bounds.ge) if limit]
     return max((share for share in (*highs, *lows) if share is not None), default=None)
 
 
 def _of_rule(template: Template, rule: Requirement) -> Check | None:
-    """Return a check of a rule; None if it compared nothing because a limit is missing."""
+    """Return the check of a rule; None if it compared nothing because a limit is missing."""
     with np.errstate(all="ignore"):
         result = outcome(template, rule)
         decisive = list(result.decisive())
@@ -196,7 +196,10 @@ def _scale(template: Template, side: Operand) -> Unit | None:
 
 
 def _misleads(template: Template, left: Operand, right: Operand) -> bool:
-    """Return whether a side is a small SI number of unknown unit, such as a length in metres."""
+    """Return whether a side is a small SI number of unknown unit, such as a length in metres.
+
+    Such a number would mislead a reader.
+    """
     pairs = ((left, right), (right, left))
     return any(_is_small(one.constant) and _scale(template, other) is None for one, other in pairs)
 

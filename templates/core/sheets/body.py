@@ -1,4 +1,4 @@
-"""Checked expression trees in place of a formula's function; a call with a template returns the value."""
+"""Checked expression trees that replace a formula's function; a call with a template returns its value."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ PER_OPERATION, PER_PLACE = 1e-6, 5e-9  # time per operation, and additional time
 
 
 def operations_seconds(operations: int, points: int) -> float:
-    """Return the approximate time of operations at a number of points, to an order of magnitude [s]."""
+    """Return the order of magnitude of the time of operations at a number of points [s]."""
     return operations * (PER_OPERATION + PER_PLACE * points)
 
 
@@ -106,12 +106,12 @@ class RuleBody(TreeBody):
 
 
 def _everywhere(run: Callable[[Any], Any]) -> Callable[[Any], Any]:
-    """Return a condition on a list as one that is true if it is true at all places."""
+    """Convert a condition on a list to a condition that is true if it is true at all places."""
     return lambda template: np.all(run(template), axis=-1)
 
 
 def _truth(node: Any) -> Callable[[Any], Any]:
-    """Return a condition as a function that uses Python's comparison operators, which can be recorded."""
+    """Return a condition as a function with Python's comparison operators, which can be recorded."""
     sign = node.operation.sign if isinstance(node, Apply) else ""
     if sign in _SIGNS:
         compare, left, right = _SIGNS[sign], *map(closure, node.arguments)

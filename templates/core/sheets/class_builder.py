@@ -67,7 +67,7 @@ class Builder:
                 self._find_kinds()
 
     def _find_kinds(self) -> None:
-        """Determine from formulas, in any order, which names in K are temperatures and which differences."""
+        """Determine from formulas, in any order, which names in K are temperatures or differences."""
         in_kelvin = [
             s for s in self.built.statements if s.kind in ("formula", "given") and self._in_kelvin(s)
         ]
@@ -98,7 +98,7 @@ class Builder:
         return self.names.sorts[name].kind != own.kind
 
     def _goes_on(self, statement: ParsedStatement) -> bool:
-        """Return whether to continue with a statement; a fault in it or too large a worksheet stops it."""
+        """Return whether to continue with a statement: without faults, and in a small enough sheet."""
         return statement.chunk.line not in self.refused and self.names.fuel >= 0
 
     def _try(self, step: Callable[[Any], None], statement: ParsedStatement | Chunk) -> None:
@@ -178,7 +178,9 @@ class Builder:
         names = tuple(map(str, options.children))
         if len(set(names)) < len(names) or any("." in option for option in names):
             remedy = "write different words, for example `(walther | vogel)`"
-            raise statement.refuse("choice", "each option must be one word that occurs once", options, remedy)
+            raise statement.refuse(
+                "choice", "each option must be a single word and occur only once", options, remedy
+            )
         if default is not None and str(default) not in names:
             message = f"the default {default} is not an option"
             raise statement.refuse("choice", message, default, f"write one of {', '.join(names)}")
@@ -301,12 +303,12 @@ class Builder:
     def _node(
         self, statement: ParsedStatement, name: str, meant: Meaning, axis: str, tree: lark.Tree[Any]
     ) -> tuple[Any, Kind]:
-        """Return the tree and kind of a value; it must be a list over an axis exactly if that is declared."""
+        """Return the tree and kind of a value, which must be a list over an axis if and only if declared."""
         part = self.reader.part(statement, tree)
         return self.reader.fitting(statement, part, meant.unit, name, tree, axis), part[1].kind
 
     def _meant(self, statement: ParsedStatement, unit_text: str, words: lark.Token, clauses: Any) -> Meaning:
-        """Return the meaning of a declaration with a unique API name, and note its example."""
+        """Return the meaning of a declaration, with a unique API name; store its example."""
         if missing := [name for name in declared_by(statement) if name not in self.names.sorts]:
             raise FollowsFromFault(missing[0])
         accepted = self._accepted(statement, unit_text)
@@ -322,7 +324,7 @@ class Builder:
         return replace(meant, read_as=accepted) if unit(accepted).absolute else replace(meant, unit=accepted)
 
     def _accepted(self, statement: ParsedStatement, unit_text: str) -> str:
-        """Return the unit whose kind a declaration in K has by its formula; else the declared unit."""
+        """Return the declared unit, or for a declaration in K the unit whose kind its formula has."""
         if statement.kind not in ("formula", "given") or kind_of(unit_text).temperatures != EITHER:
             return unit_text
         found = self.names.sorts[str(statement.parts[0])].kind

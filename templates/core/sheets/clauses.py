@@ -86,7 +86,7 @@ def said_in(
     unit_text: str | None = None,
     accepted: str | None = None,
 ) -> Said:
-    """Return the contents of the clauses; bounds need the unit of the declaration."""
+    """Return the contents of the clauses; the unit of the declaration is needed for bounds."""
     said, keys = Said(), set[str]()
     for clause in clauses.children if clauses else ():
         if clause is not None:

@@ -22,7 +22,7 @@ _OPERATORS = frozenset({"+", "-", "*", "/", "**"})
 def criterion_of(
     statement: ParsedStatement, node: Any, words: str, said: Said, declared: Mapping[str, Any]
 ) -> tuple[str, dict[str, str]]:
-    """Return the name and content of a criterion in the form in which templates declare them.
+    """Return the name and content of a criterion in the form that templates declare.
 
     Raises
     ------

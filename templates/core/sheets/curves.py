@@ -79,5 +79,5 @@ def _called(name: str, units: tuple[str, str], operation: Partial) -> Call:
 
 
 def points_of(parts: Sequence[Any]) -> list[lark.Tree[Any]]:
-    """Return the points of a curve among the parts of its statement."""
+    """Return the points of a curve, found among the parts of its statement."""
     return [part for part in parts if isinstance(part, lark.Tree) and part.data == "point"]

@@ -22,7 +22,7 @@ _CALLS = 3  # nested calls per formula, in addition to those within its expressi
 
 
 def set_order(built: Built) -> Iterator[SheetFault]:
-    """Set the formulas that each formula of a worksheet evaluates first; too deep defaults are a fault."""
+    """Set the formulas that each formula of a worksheet evaluates first; too deep defaults are faults."""
     bodies: dict[str, Any] = {
         n: m.function for n, m in built.parts.items() if isinstance(m, (Formula, Derived, Requirement))
     }

@@ -1,4 +1,4 @@
-"""Read the expressions in statements: their trees, their kinds of quantity, and limits that are a number."""
+"""Read the expressions in statements: their trees, their kinds of quantity, and numeric limits."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ class Reader:
         """Return a limit as a number in the declared unit; it may be typed without a unit or in another.
 
         The limit has the kind of the quantity that it limits, which `accepted` gives if the declared unit
-        does not.
+        does not determine it.
 
         Raises
         ------
@@ -162,7 +162,7 @@ class Reader:
         return {"value": shown.tolist(), "unit": unit_text}
 
     def _as_typed(self, statement: ParsedStatement, text: str, tree: lark.Tree[Any], unit_text: str) -> str:
-        """Return a number with its unit, if a user might type it for a value in the declared unit."""
+        """Return a number with its unit if a user might type it for the declared unit, otherwise None."""
         if " " not in text and unit_text != "1":
             return f"{text} {unit_text}"
         try:
@@ -190,7 +190,7 @@ class Reader:
 
 
 def is_literal(axis: str) -> bool:
-    """Return whether an axis is that of a literal list, such as `3 items`."""
+    """Return whether an axis, such as `3 items`, belongs to a list that is written out."""
     return " " in axis
 
 

@@ -66,7 +66,7 @@ class Function:
 
 
 def taken(parameter: str, unit_text: str, part: Part, takes: str) -> Kind:
-    """Return the kind that an argument has as the value of a parameter.
+    """Return the kind that an argument has when a parameter takes its value.
 
     Raises
     ------
@@ -87,7 +87,7 @@ def taken(parameter: str, unit_text: str, part: Part, takes: str) -> Kind:
 
 
 def function_of(statement: ParsedStatement, reader: Reader) -> Function:
-    """Return the function that a statement declares, with the units of its formula checked.
+    """Return the function that a statement declares, after checking the units of its formula.
 
     Raises
     ------

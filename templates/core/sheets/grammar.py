@@ -46,7 +46,7 @@ class ParsedStatement:
 
     @property
     def parts(self) -> list[Any]:
-        """Return the relevant words and parts, with None for an omitted optional one."""
+        """Return the relevant words and parts; an omitted optional part is None."""
         return self.tree.children
 
     def text_of(self, tree: lark.Tree[Any]) -> str:

@@ -1,4 +1,4 @@
-"""Remedies for a statement that cannot be parsed, from the offending character or the missing part."""
+"""Remedies for a statement that cannot be parsed, chosen by the offending character or the missing part."""
 
 from __future__ import annotations
 

@@ -137,7 +137,7 @@ def solved(matrices: NDArray[Any], right: NDArray[Any]) -> tuple[NDArray[Any], N
 
 
 def _sizes(matrices: NDArray[Any], axis: int) -> NDArray[Any]:
-    """Return the size of each row or column as a power of 2, so that dividing by it is exact."""
+    """Return the size of each row or column as a power of 2, so that division by it is exact."""
     most = np.abs(matrices).max(axis=axis, keepdims=True)
     return np.ldexp(1.0, np.frexp(most)[1] - 1)
 

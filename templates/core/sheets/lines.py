@@ -75,7 +75,7 @@ def _faults_of_text(text: str) -> Iterator[SheetFault]:
 
 
 def _is_no_text(sign: str) -> bool:
-    """Return whether a character is a lone surrogate, a control character, or changes the text direction."""
+    """Return whether a character is not text: a lone surrogate, a control character, or a direction mark."""
     return "\ud800" <= sign <= "\udfff" or (sign < " " and sign != "\t") or sign in _CONTROLS
 
 

@@ -25,7 +25,7 @@ def markdown_of(chunk: Chunk) -> str:
 
 
 def documentation_of(chunks: Iterable[Chunk]) -> str:
-    """Return the prose as a docstring: the title is its first sentence, three headings are its sections."""
+    """Return the prose as a docstring: the title is its first sentence, and three headings are sections."""
     return "\n".join(_lines(chunk for chunk in chunks if chunk.kind == "prose")).strip()
 
 

@@ -79,7 +79,7 @@ def common_unit(kind: Kind) -> str:
 
 
 def names_in_units(at: Any, names: Names) -> str:
-    """Return the advice to put blanks before a name that was read as a unit, as the tonne in `1 turn/t`."""
+    """Return the advice to put blanks before a name that was read as a unit, such as t in `1 turn/t`."""
     tokens = (
         at.scan_values(lambda token: getattr(token, "type", "") == "QUANTITY") if hasattr(at, "data") else ()
     )
@@ -99,7 +99,7 @@ def _spaced(part: re.Match[str], names: Names) -> str:
 
 
 def _equal(at: lark.Tree[Any], names: Names) -> str:
-    """Return a sentence on what the operation at a place requires."""
+    """Return a sentence about what the operation at a place requires of its operands."""
     called = str(at.children[0])[:-1] if at.data == "call" else ""
     if at.data in _EQUAL or called in _EQUAL_CALLS:
         return "write both in the same unit"

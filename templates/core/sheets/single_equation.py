@@ -82,7 +82,7 @@ class SolveBody(Body):
         return roots[()]
 
     def seconds(self, points: int) -> float:
-        """Return the approximate time of the search at a number of points, to an order of magnitude [s]."""
+        """Return the order of magnitude of the time of the search at a number of points [s]."""
         return STEPS * (PER_STEP + operations_seconds(self._operations, points))
 
     @cached_property
@@ -92,7 +92,7 @@ class SolveBody(Body):
     def _roots(
         self, values: Mapping[str, Any], low: NDArray[Any], high: NDArray[Any]
     ) -> tuple[NDArray[Any], NDArray[Any]]:
-        """Return the roots, NaN without one, and a mask of the points at which both bounds are roots."""
+        """Return the roots, NaN without one, and a mask of the points where both bounds are roots."""
         flat = {name: self._flat(name, value, low.shape) for name, value in values.items()}
         places = np.arange(low.size)
         ends = np.minimum(low, high).ravel(), np.maximum(low, high).ravel()

@@ -65,7 +65,7 @@ def _run(cls: type[Template], test: SheetTest) -> TestResult:
 
 
 def _met(template: Template, one: ExpectedResult) -> str:
-    """Return a sentence on the results that agree with the expected ones."""
+    """Return a sentence about the results that agree with the expected ones."""
     declared = template.formulas[one.name]
     shown = _shown(getattr(template, declared.attribute), declared.meaning.scale)
     return f"{declared.meaning.words} is {shown}: {one.shown}"
@@ -87,7 +87,7 @@ def _missed(template: Template, test: SheetTest) -> Iterator[str]:
 
 
 def _distance(value: Any, wanted: Any, scale: Unit) -> str:
-    """Return the difference of a single value from the expected one as text: `: 8.3 MPa (28 %) too low`."""
+    """Return how far a single value is from the expected one as text: `: 8.3 MPa (28 %) too low`."""
     if np.ndim(value) or np.ndim(wanted) or np.isnan(value):
         return ""
     difference, size = float(value) - float(wanted), abs(float(scale.from_si(wanted)))

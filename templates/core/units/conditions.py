@@ -44,7 +44,7 @@ def _any(*conditions: Value) -> Value:
 
 
 def _chosen(condition: Value, one: Value, other: Value) -> Value:
-    """Return one of two values by a condition, NaN where it is unknown; both values are calculated."""
+    """Return one of two values by a condition; NaN where it is unknown. Both values are calculated."""
     if isinstance(condition, np.ndarray) or isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
         if isinstance(condition, np.ndarray) and condition.dtype == bool:  # no value is missing
             return np.where(condition, one, other)

@@ -23,7 +23,7 @@ _OF_TURNS = re.compile(r"(?:(2)\s*\*\s*)?pi\s*\*\s*(.+)", re.DOTALL)
 
 
 def misfit(kind: Kind, want: Unit, text: str) -> tuple[str, str] | None:
-    """Return why a value does not fit a declared unit, and a remedy; None if it fits.
+    """Return the reason why a value does not fit a declared unit, and a remedy; None if it fits.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def misfit(kind: Kind, want: Unit, text: str) -> tuple[str, str] | None:
 
 
 def declared_kind(got: Kind, want: Kind) -> Kind:
-    """Return the kind of a declared value: the kind of its unit or, if the unit is K, of the value."""
+    """Return the kind of a declared value: that of its unit, or that of the value itself if the unit is K."""
     counts = got.temperatures
     if want.temperatures != EITHER or counts is None:
         return replace(want, temperatures=want.temperatures if want.temperatures != EITHER else counts)
@@ -89,7 +89,7 @@ def _counted(text: str) -> str:
 
 
 def _without_minutes(text: str) -> tuple[str, str]:
-    """Return a product without the factor 60 of formulas in minutes, and the advice to omit it."""
+    """Return a product without the factor 60 that formulas in minutes have, and the advice to omit it."""
     bare = _MINUTES.sub("", text) if not re.search(r"[-+,]", text) else text
     return bare, "omit 60, which the units contain, and " if bare != text else ""
 
@@ -123,7 +123,7 @@ def turns_remark(kind: Kind, want: Unit, text: str) -> str:
 
 
 def _over(name: str, divisor: str) -> str:
-    """Return a name, or a number with its unit, divided by a divisor."""
+    """Return the text of a name, or of a number with its unit, divided by a divisor."""
     return f"{name} / ({divisor})" if " " in name else f"{name}/({divisor})"
 
 

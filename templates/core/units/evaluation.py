@@ -17,7 +17,7 @@ LISTWISE = frozenset({LIST, ITEM, *OVER_LISTS.values()})
 
 
 def value_of(node: Any, values: Mapping[str, Value]) -> Value:
-    """Return the value of a tree from the values of its names, and of its items by their text.
+    """Return the value of a tree, given the values of its names, and those of its items by their text.
 
     Raises
     ------
@@ -37,7 +37,7 @@ def value_of(node: Any, values: Mapping[str, Value]) -> Value:
 
 
 def listwise(operation: Operation, parts: list[Value], ranks: list[int]) -> Value:
-    """Return the value of an operation that takes or makes a list; `ranks` counts the axes of each operand.
+    """Return the value of an operation that takes or creates a list; `ranks` counts the axes of each operand.
 
     Raises
     ------

@@ -191,7 +191,8 @@ class _Builder:
         Raises
         ------
         FaultyText
-            With code `too_large`: an expression between two signs is compared, and so calculated, twice.
+            With code `too_large`, because an expression between two signs is compared twice and so calculated
+            twice.
         """
         if any(_size(node) > MAX_TWICE for node, _ in sides[1:-1]):
             raise FaultyText("too_large", "chained comparisons are nested too deeply; join them by `and`")
@@ -249,12 +250,13 @@ class _CheckedBuilder(_Builder):
 
 
 def check_word(name: str, word: str, options: Sequence[str]) -> None:
-    """Raise an error for a test of a choice that can never be true.
+    """Raise an error if the test of a choice can never be true.
 
     Raises
     ------
     FaultyText
-        With code `no_truth`, if the name is not a choice; `unknown_name`, if the word is not an option of it.
+        With code `no_truth`, if the name is not a choice; `unknown_name`, if the word is not one of its
+        options.
     """
     if not options:
         raise FaultyText("no_truth", f"{name[:60]} is not a choice; compare it with < <= > >= == or !=")

@@ -63,7 +63,7 @@ def zones() -> Mapping[str, Sequence[Step]]:
 
 
 def _unknown(zone: str) -> str:
-    """Return a sentence on the available grades of a zone's letter, or on the available letters."""
+    """Return a sentence that lists the available grades of a zone's letter, or the available letters."""
     letters = zone.rstrip("0123456789")
     alike = [name for name in zones() if name.rstrip("0123456789") == letters]
     if alike:

@@ -61,7 +61,7 @@ def item_of(item: Item, values: Mapping[str, Value], rows: Container[str] = ()) 
 
 
 def _places(item: Item, values: Mapping[str, Value], rows: Container[str], length: int) -> NDArray[np.intp]:
-    """Return the index counted from 0: a single one, or one for each row."""
+    """Return the index counted from 0: a single index, or one for each row."""
     raw = np.asarray(values[item.index] if isinstance(item.index, str) else item.index, dtype=float)
     if raw.ndim > (item.index in rows):
         raise FaultyText("index", f"{item.text}: an index must be a single number, not an array")

@@ -21,7 +21,7 @@ def _stacked(*items: Value) -> Value:
 
 
 def _item(values: Value, index: Value) -> Value:
-    """Return the item of a list at an index from 1; NaN outside the list."""
+    """Return the item of a list at an index counted from 1; NaN outside the list."""
     whole, place = np.asarray(values, dtype=float), np.asarray(index, dtype=float)
     right = (place == np.floor(place)) & (place >= 1) & (place <= whole.shape[-1])
     at = np.where(right, place, 1.0).astype(np.intp) - 1

@@ -55,7 +55,7 @@ class Kind:
     def unit(self) -> str:
         """Return the unit in which a value of this kind is shown.
 
-        Reading this unit gives the same kind again.
+        If this unit is read again, it gives the same kind.
         """
         if not self._is_kelvin or self.temperatures is None:
             return base_text(self)

@@ -71,9 +71,9 @@ class TypedQuantity:
 def read(raw: Any, declared: str) -> TypedQuantity:
     """Return a quantity from any of its accepted forms; `declared` is the declared unit of the value.
 
-    Forms: `"25 kN"`, `{"value": 25, "unit": "kN"}` (value may be a list), a list of these, and a bare number
-    or list of numbers if the declared unit is `1`. A text or an object may contain a tolerance:
-    `"25 ± 1 kN"`, `"plus": 1`.
+    The forms are `"25 kN"`, `{"value": 25, "unit": "kN"}` (value may be a list), a list of these, and a bare
+    number or list of numbers if the declared unit is `1`. A text or an object may contain a tolerance: `"25 ±
+    1 kN"`, `"plus": 1`.
 
     Raises
     ------
@@ -181,7 +181,7 @@ def _read_text(text: str, declared: str) -> TypedQuantity:
 
 
 def _refuse_decimal_comma(text: str, declared: str) -> None:
-    """Raise an error for a quantity with decimal commas that shows it with decimal points.
+    """Raise an error for a quantity with decimal commas; the error shows it with decimal points.
 
     Raises
     ------
@@ -200,7 +200,7 @@ def _refuse_decimal_comma(text: str, declared: str) -> None:
 
 
 def _with_points(text: str) -> str:
-    """Return a text with decimal points for decimal commas, so that its unit can be read."""
+    """Return a text with decimal points in place of decimal commas, so that its unit can be read."""
     if "," not in text or len(text) > LONGEST_TEXT:
         return text
     ungrouped = _ENGLISH.sub(lambda match: match[0].replace(",", ""), text)
@@ -258,7 +258,7 @@ def _read_list(raw: list[Any], declared: str) -> TypedQuantity:
 
 
 def _read_each(raw: list[Any], declared: str) -> TypedQuantity:
-    """Return a list of quantities, each typed in its own unit, in the declared unit."""
+    """Return a list of quantities in the declared unit; each may be typed in its own unit."""
     parts = [read(item, declared) for item in raw]
     if len({np.shape(part.si) for part in parts}) > 1:
         raise FaultyText(
@@ -311,7 +311,7 @@ def _finite(number: float) -> float:
 
 
 def _array(raw: Sequence[Any]) -> Array:
-    """Return an evenly nested list of numbers as an array; `true` and texts are not numbers."""
+    """Return an evenly nested list of numbers as an array; `true` and texts do not count as numbers."""
     flat, shape = list(raw), [len(raw)]
     while flat and isinstance(flat[0], (list, tuple)) and len(shape) < _DEEPEST:
         shape.append(len(flat[0]))

@@ -13,8 +13,8 @@ _PART = re.compile(r"([*·/]?)(?:\(([^)]*)\)|([^*·/()]+))")
 def quotient(over: str, under: str) -> str:
     """Return the quotient of two units in a form that `units.unit` reads.
 
-    For a temperature, the unit of a temperature difference is used. The result is in SI base units if the
-    names of both units are too long together.
+    The unit of a temperature is replaced by that of a temperature difference. The result is in SI base units
+    if the names of the two units together are too long.
     """
     text = _quotient(difference_of(over), difference_of(under))
     try:

@@ -46,9 +46,9 @@ def shared(sign: str, one: Kind, other: Kind, nodes: tuple[Any, Any]) -> Kind:
 
 
 def _remedy(one: frozenset[float], other: frozenset[float], nodes: tuple[Any, Any]) -> str:
-    """Return how a temperature and a difference become values of one kind.
+    """Return advice on how a temperature and a difference can become values of one kind.
 
-    A number typed in degC or degF as a summand of either may be meant as a difference.
+    A number in degC or degF that is added to either of them may be meant as a difference.
     """
     for (own, beside), node in zip(((one, other), (other, one)), nodes, strict=True):
         for texts, sign in _summands(node):
@@ -59,7 +59,10 @@ def _remedy(one: frozenset[float], other: frozenset[float], nodes: tuple[Any, An
 
 
 def _summands(node: Any, sign: int = 1) -> Iterator[tuple[tuple[str, ...], int]]:
-    """Yield numbers typed in degC or degF that a sum adds or subtracts; `min` and `max` give one group."""
+    """Yield numbers typed in degC or degF that a sum adds or subtracts.
+
+    Those in a `min` or `max` form one group.
+    """
     match node:
         case Constant() if text := literal(node):
             yield (text,), sign
@@ -98,7 +101,7 @@ def _counted(node: Any) -> str:
 def _kind(
     of: Kind, temperatures: Temperatures, *, is_literal: bool = False, pi: int = 0, twos: Iterable[int] = ()
 ) -> Kind:
-    """Return a kind; only a unit of temperature counts temperatures, only one with an angle counts turns."""
+    """Return a kind; only a unit of temperature can count temperatures, only one with an angle turns."""
     is_kelvin = of.base == registry.kelvin
     few = temperatures is None or len(temperatures) <= _MOST_COUNTS
     return Kind(
@@ -128,7 +131,7 @@ def literal(node: Any) -> str:
 
 
 def meanings_of(text: str) -> str:
-    """Return both meanings of a number typed in degC or degF."""
+    """Return the two possible meanings of a number typed in degC or degF."""
     number, _, name = text.partition(" ")
     return (
         f"{unit(name).to_si(float(number)):.9g} K for a temperature, {as_difference(text)} for a difference"
@@ -144,7 +147,7 @@ def as_difference(text: str) -> str:
 def as_compared(sign: str, other: Kind, node: Any, beside: Any) -> str:
     """Return a number typed in degC or degF as a comparison reads it; empty if it is read as typed.
 
-    If the other side is a temperature difference, the number is a difference too.
+    If the other side is a temperature difference, the number is read as a difference too.
 
     Raises
     ------
@@ -181,7 +184,7 @@ def summed(operation: Operation, kinds: list[Kind], nodes: tuple[Any, ...]) -> K
 
 
 def product(operation: Operation, kinds: list[Kind], nodes: tuple[Any, ...]) -> Kind:
-    """Return the kind of a product or quotient; a literal factor 2*pi turns cycles into an angle, or back."""
+    """Return the kind of a product or quotient; a literal factor 2*pi converts cycles to angles, or back."""
     relative(operation, kinds, nodes)
     one, other = kinds
     sign = -1 if operation.sign == "/" else 1
@@ -198,7 +201,7 @@ def product(operation: Operation, kinds: list[Kind], nodes: tuple[Any, ...]) -> 
 
 
 def _scaled(sign: str, nodes: tuple[Any, ...], one: Kind, other: Kind) -> Temperatures:
-    """Return how many temperatures a product or quotient contains; only pure numbers count as factors."""
+    """Return the number of temperatures in a product or quotient; only pure numbers may be factors."""
     factor, divided = plain_number(nodes[1]), plain_number(nodes[0])
     if factor is not None and one.base == registry.kelvin:
         if one.temperatures is None or (sign == "/" and not factor):
@@ -263,7 +266,7 @@ def keep(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
 
 
 def pure(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
-    """Return the kind of a function of a pure number or an angle."""
+    """Return the kind of a function that takes a pure number or an angle."""
     if not is_number(kinds[0]):
         raise FaultyText(
             "unit_mismatch", f"{operation.sign} takes an angle or a pure number, not {in_words(kinds[0])}"
@@ -272,7 +275,7 @@ def pure(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
 
 
 def angle(operation: Operation, kinds: list[Kind], arguments: tuple[Any, ...]) -> Kind:
-    """Return the kind of the angle of two lengths, or of two values of the same kind."""
+    """Return the kind of the angle given by two lengths, or by two values of the same kind."""
     same(operation, kinds, arguments)
     return Kind(RADIAN)
 
@@ -296,7 +299,7 @@ def is_number(kind: Kind) -> bool:
 
 
 def in_words(kind: Kind) -> str:
-    """Return a kind as text, by a unit with its own name: `N` for `kg·m/s²`."""
+    """Return a kind as text, by a unit with its own name if there is one: `N` for `kg·m/s²`."""
     if is_rate(kind.base) and kind.cycles:
         return base_text(kind)
     named = (name for name, base in _named().items() if base == kind.base)
@@ -305,6 +308,6 @@ def in_words(kind: Kind) -> str:
 
 @cache
 def _named() -> dict[str, Any]:
-    """Return the derived units with names of their own, such as N, by their SI base units."""
+    """Return the derived units with names of their own, such as N, keyed by their SI base units."""
     names = ("N", "Pa", "N·m", "W", "Pa·s", "N/m", "N·m/rad", "W/(m·K)", "J/(kg·K)")
     return {name: registry.Unit(registry.get_base_units(name.replace("·", "*"))[1]) for name in names}

@@ -47,7 +47,7 @@ Part = tuple[Any, Sort]
 
 
 def applied(operation: Operation, parts: Sequence[Part]) -> Part:
-    """Return an operation applied to its operands, and its sort.
+    """Return the node that applies an operation to its operands, and the sort of its result.
 
     A single value that is combined with a list gets a trailing axis here, once.
 

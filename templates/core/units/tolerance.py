@@ -1,6 +1,8 @@
 """Tolerances of quantities: `55 ± 5 um`, `55 +10/-5 um`, `48 mm H7`, or `plus` and `minus` of an object.
 
 A tolerance gives the limits of a value and its distribution between them. Ordinary calculations ignore it.
+With `55 ± 5 um, in table` (in an object: `state_in_table`), the table of a drawing states the tolerance if no
+face can carry it.
 """
 
 from __future__ import annotations
@@ -8,7 +10,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -20,7 +22,10 @@ from templates.core.units.units import Unit, Value, difference_of, require_same_
 Distribution = Literal["normal", "uniform", "triangular"]
 DISTRIBUTIONS: tuple[Distribution, ...] = get_args(Distribution)
 FORMS = "55 ± 5 um, 55 +10/-5 um or 48 mm H7"
-KEYS = ("plus", "minus", "upper", "lower", "zone", "distribution")
+STATE_IN_TABLE = "state_in_table"
+IN_TABLE = ", in table"
+"""What follows a tolerance in a text instead of that key."""
+KEYS = ("plus", "minus", "upper", "lower", "zone", "distribution", STATE_IN_TABLE)
 """The keys that an object may have in addition to `value` and `unit`."""
 
 LONGEST_TEXT = 200
@@ -29,6 +34,7 @@ _SIGN = r"[+\-−]"
 _FIRST = re.compile(r"(?:1(?=[/*·]))?(?![0-9.+\-−±])[^\s±+−]*")  # the unit before it; there may be none
 _SAME = re.compile(rf"(?:±|\+\s?/?\s?[-−])\s*({NUMBER})\s*(.*)", re.DOTALL)
 _TWO = re.compile(rf"({_SIGN}?)\s*({NUMBER})\s*/\s*({_SIGN}?)\s*({NUMBER})\s*(.*)", re.DOTALL)
+_TABLE_AT_END = re.compile(r"\s*,\s*in\s+table\s*\Z")
 _ZONE = re.compile(r"[A-Za-z]{1,2}[0-9]{1,2}")
 _FIT = re.compile(rf"{_ZONE.pattern}\s*/\s*{_ZONE.pattern}")
 
@@ -46,12 +52,15 @@ class Tolerance:
         `uniform`, or `triangular`. Mean and peak are in the middle of the limits.
     zone
         The ISO 286 zone from which the limits come.
+    state_in_table
+        Whether the table of a drawing states it if no face can carry it.
     """
 
     lower: Value
     upper: Value
     distribution: Distribution = "normal"
     zone: str | None = None
+    state_in_table: bool = False
 
 
 @dataclass(frozen=True)
@@ -63,6 +72,7 @@ class Written:
     upper: float
     scale: str
     zone: str | None = None
+    state_in_table: bool = False
 
     def of(self, si: float, name: str, declared: str) -> tuple[Tolerance, dict[str, Any]]:
         """Return the tolerance of a value [SI] in the unit `name`, and its text for an answer.
@@ -73,20 +83,30 @@ class Written:
             If the limits contradict each other or the value.
         """
         if self.zone is not None:
-            return in_zone(self.zone, si, name)
-        factor = _difference(self.scale, declared).factor
-        tolerance = _between(self.lower * factor, self.upper * factor)
-        return tolerance, stated(tolerance, require_same_kind(name, declared))
+            tolerance, extra = in_zone(self.zone, si, name)
+        else:
+            factor = _difference(self.scale, declared).factor
+            tolerance = _between(self.lower * factor, self.upper * factor)
+            extra = stated(tolerance, require_same_kind(name, declared))
+        if self.state_in_table:
+            return replace(tolerance, state_in_table=True), {**extra, STATE_IN_TABLE: True}
+        return tolerance, extra
 
 
 def split(text: str) -> Written | None:
-    """Return the text after the number of a quantity if it contains a tolerance, else None.
+    """Return the text after the number of a quantity if it contains a tolerance, otherwise None.
 
     Raises
     ------
     FaultyText
         If the text begins like a tolerance but cannot be read as one.
     """
+    if suffix := _TABLE_AT_END.search(text):
+        written = split(text[: suffix.start()])
+        if written is None:
+            detail = f"`in table` follows a tolerance; write it like {FORMS}, in table"
+            raise FaultyText("not_a_tolerance", detail)
+        return replace(written, state_in_table=True)
     first = match[0] if (match := _FIRST.match(text)) else ""
     rest = text[len(first) :].strip()
     if not rest:
@@ -108,7 +128,7 @@ def split(text: str) -> Written | None:
 
 
 def _written(first: str, lower: float, upper: float, last: str) -> Written:
-    """Return the value and its limits in the last unit of the text, or else in the unit of the value."""
+    """Return the value and its limits in the last unit of the text, or otherwise in the unit of the value."""
     last = last.strip()
     return Written(first or last or "1", lower, upper, last or first or "1")
 
@@ -122,7 +142,7 @@ def _signed(sign: str, number: str) -> float:
 
 
 def is_toleranced(raw: Any) -> bool:
-    """Return whether a quantity as written by the user, or any item of a list, has a tolerance."""
+    """Return whether a quantity as the user wrote it has a tolerance; for a list, whether any item has."""
     match raw:
         case str():
             return _has_tolerance(raw)
@@ -152,7 +172,7 @@ def is_zone(text: str) -> bool:
 def from_object(raw: Mapping[str, Any], name: str, declared: str, si: Value) -> Tolerance | None:
     """Return the tolerance of an object whose value is `si` [SI] in the unit `name`; None if it has none.
 
-    `plus` and `minus` are how far the value may lie above and below; `upper` and `lower` are signed
+    `plus` and `minus` are the largest deviations above and below the value; `upper` and `lower` are signed
     deviations, for limits that may both be on one side. Each is a number in the value's unit, or a text.
 
     Raises
@@ -164,12 +184,21 @@ def from_object(raw: Mapping[str, Any], name: str, declared: str, si: Value) -> 
     if not given:
         return None
     distribution = _distribution(raw.get("distribution", "normal"))
+    in_table = _in_table(raw.get(STATE_IN_TABLE, False))
     limits = {key: _deviation(raw[key], name, declared) for key in given & {*KEYS[:4]}}
     if "zone" in raw:
-        return _of_zone(raw["zone"], limits, si, name, distribution)
+        return replace(_of_zone(raw["zone"], limits, si, name, distribution), state_in_table=in_table)
     if not limits:
-        raise FaultyText("not_a_tolerance", "a distribution needs limits: give plus, minus or a zone")
-    return _between(*_ends(limits), distribution)
+        detail = "`distribution` and `state_in_table` need limits: give plus, minus or a zone"
+        raise FaultyText("not_a_tolerance", detail)
+    return replace(_between(*_ends(limits), distribution), state_in_table=in_table)
+
+
+def _in_table(raw: Any) -> bool:
+    if not isinstance(raw, bool):
+        detail = f"{excerpt(raw)} is not a value of `state_in_table`; give true or false"
+        raise FaultyText("not_an_option", detail)
+    return raw
 
 
 def _distribution(raw: Any) -> Distribution:
@@ -288,7 +317,7 @@ def _short(number: float) -> float:
 
 
 def joined(tolerances: list[Tolerance | None]) -> Tolerance | None:
-    """Return the tolerances of the items of a list as one tolerance; None if no item has any.
+    """Return the tolerances of the items of a list as one tolerance; None if no item has one.
 
     Raises
     ------
@@ -304,4 +333,5 @@ def joined(tolerances: list[Tolerance | None]) -> Tolerance | None:
         np.array([0.0 if one is None else getattr(one, end) for one in tolerances])
         for end in ("lower", "upper")
     )
-    return Tolerance(lower, upper, present[0].distribution)
+    in_table = any(one.state_in_table for one in present)
+    return Tolerance(lower, upper, present[0].distribution, state_in_table=in_table)

@@ -175,7 +175,7 @@ class Measured(Protocol):
 
     @property
     def cycles(self) -> float:
-        """Return the power of the hertz."""
+        """Return the exponent of the hertz."""
 
 
 def base_text(measured: Measured) -> str:
@@ -190,7 +190,7 @@ def is_rate(base: pint.Unit) -> bool:
 
 
 def radians(base: pint.Unit) -> float:
-    """Return the power of the radian in base units."""
+    """Return the exponent of the radian in base units."""
     exponents: dict[str, Any] = dict(registry.Quantity(1.0, base).unit_items())
     return float(exponents.get("radian", 0))
 
@@ -209,12 +209,12 @@ def compatible(one: Measured, other: Measured) -> bool:
 
 
 def _counted(measured: Measured) -> tuple[float, float]:
-    """Return the powers of the radian and of the hertz, by which kinds of rates differ."""
+    """Return the exponents of the radian and of the hertz, by which kinds of rates differ."""
     return radians(measured.base), measured.cycles
 
 
 def dimension_of(measured: Measured) -> str:
-    """Return a text that is equal for units of the same dimension; rad/s, Hz and 1/s have different texts."""
+    """Return a text that is equal for units of equal dimension, but differs between rad/s, Hz and 1/s."""
     dimensions = dict(registry.get_dimensionality(measured.base))
     counted = zip(("rad", "cycle"), _counted(measured) if is_rate(measured.base) else (), strict=False)
     powers = sorted([*dimensions.items(), *((name, power) for name, power in counted if power)])
@@ -242,7 +242,7 @@ def difference_of(name: str) -> str:
 
 
 def difference_in(name: str) -> str:
-    """Return the unit of a difference that is declared in a unit such as K, else the unit itself."""
+    """Return the unit of a difference that is declared in a unit such as K, otherwise the unit itself."""
     return {1.0: "delta_degC", unit("degF").factor: "delta_degF"}.get(unit(name).factor, name)
 
 
@@ -306,9 +306,9 @@ def _remedy(want: Unit) -> str:
 
 
 def _meant(got: Unit, want: Unit) -> str:
-    """Return a hint on units that are often mistaken.
+    """Return a hint about units that are often mistaken.
 
-    Pint reads C as coulomb, F as farad, U as an enzyme unit.
+    Pint reads C as coulomb, F as farad, and U as an enzyme unit.
     """
     if want.base == registry.kelvin and got.text in ("C", "F"):
         return f" ({got.text} is not a temperature: write deg{got.text})"
@@ -338,7 +338,7 @@ def _measured(scale: Unit) -> str:
 
 @lru_cache(maxsize=4096)
 def unit_symbol(text: str) -> str:
-    """Return the printed form of a unit, factors in the same order: `N*m` → `N·m`, `mm**2/s` → `mm²/s`.
+    """Return the printed form of a unit, in the same order: `N*m` → `N·m`, `mm**2/s` → `mm²/s`.
 
     The result is empty for a pure number.
     """

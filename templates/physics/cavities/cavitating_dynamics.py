@@ -39,7 +39,7 @@ class LinearFilm:
     """Damping, (2, 2), per velocity over omega_h times the radial clearance."""
 
     def turned(self, attitude: float) -> "LinearFilm":
-        """Return the same values in axes x, y; the line of centres is ahead of x by the attitude [rad]."""
+        """Return the same values in axes x, y; the line of centres lies ahead of x by the attitude [rad]."""
         cos, sin = np.cos(attitude), np.sin(attitude)
         turn = np.array([[cos, -sin], [sin, cos]])
         return LinearFilm(turn @ self.force, turn @ self.K @ turn.T, turn @ self.B @ turn.T)
@@ -61,7 +61,7 @@ def linear_film(film: RingSolution) -> LinearFilm:
 
 
 def _response(film: RingSolution) -> Callable[[Array], tuple[Array, Array]]:
-    """Return a function: the changes of pressure and void that compensate a loss of oil at the nodes."""
+    """Return a function that computes how pressure and void change to balance a loss of oil at the nodes."""
     network, free = film.network, film.network.free
     full = film.solution.void == 0
     slopes, is_full = ColumnScaledSum.of(network.A, network.T).among(free), full[free]

@@ -127,13 +127,13 @@ def _interpolated(solved: RingSolution, finer: Ring) -> tuple[Array, Array]:
 
 
 def _between(nodes: Array, places: Array) -> tuple[NDArray[np.intp], Array]:
-    """Return the index of the node before each place, and the fraction of the interval up to the place."""
+    """Return the index of the node before each place, and the fraction of the interval up to that place."""
     before = np.clip(np.searchsorted(nodes, places, side="right") - 1, 0, nodes.size - 2)
     return before, np.clip((places - nodes[before]) / np.diff(nodes)[before], 0.0, 1.0)
 
 
 def force(ring: Ring, P: Array) -> Array:
-    """Return the force of a nodal pressure along and ahead of the line of centres, as So, (2,) [-]."""
+    """Return the force of a nodal pressure along and ahead of the line of centres, in So, (2,) [-]."""
     weight = dual_widths(ring.phi)
     axes = np.array([np.cos(ring.phi), np.sin(ring.phi)]) * weight
     return axes @ ring.closed(P) @ dual_widths(ring.zeta) / 2

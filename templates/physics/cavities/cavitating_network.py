@@ -1,4 +1,4 @@
-"""Flow balances of a journal's cavitating film on a ring of nodes, and their derivatives by the gap.
+"""Flow balances of a journal's cavitating film on a ring of nodes, and derivatives with respect to the gap.
 
 Every coefficient is the product of a circumferential and an axial factor, as in `film_equations`; a change of
 the gap changes only the circumferential factors.
@@ -71,7 +71,7 @@ def _wrapped(angle: Array) -> Array:
 
 
 def _snapped(nodes: Array, places: Array) -> Array:
-    """Return the nodes with the inner node nearest to each place moved onto it."""
+    """Return the nodes after moving the inner node nearest to each place onto that place."""
     nodes = nodes.copy()
     for place in places[(places > nodes[0]) & (places < nodes[-1])]:
         nodes[1 + np.abs(nodes[1:-1] - place).argmin()] = place
@@ -79,7 +79,7 @@ def _snapped(nodes: Array, places: Array) -> Array:
 
 
 def _inside(groove: Groove, phi: Array, zeta: Array) -> Mask:
-    """Return a mask of the nodes in a groove; a very narrow groove still contains the node moved onto it."""
+    """Return a mask of the nodes in a groove; even a very narrow groove contains the node moved onto it."""
     around = np.abs(_wrapped(phi - groove.centre)) <= groove.width / 2 + 1e-9
     return around[:, None] & (zeta <= groove.length + 1e-9)
 
@@ -106,9 +106,9 @@ def perturbed_flows(ring: Ring, change: Array, change_mid: Array) -> tuple[csc_a
 
 
 def _flows(ring: Ring, cube_mid: Array, cube: Array, H_mid: Array) -> tuple[csc_array, csc_array]:
-    """Return the outflow of the nodes by pressure and by shear, for H³ between and at nodes and H between.
+    """Return the outflow of the nodes by pressure and by shear, from H³ and H at and between nodes.
 
-    Both matrices have the same sparsity pattern, so their sums need no new one.
+    Both matrices have the same sparsity pattern, so that their sums need no new pattern.
     """
     n, m, dual = ring.phi.size - 1, ring.zeta.size, dual_widths(ring.zeta)
     cell = cube * dual_widths(ring.phi) / ring.ratio**2
@@ -135,7 +135,7 @@ class _Pattern:
     """(entries,) the position of each shear entry."""
 
     def filled(self, places: Numbers, values: list[Array]) -> csc_array:
-        """Return the matrix of entries; entries at the same position are added."""
+        """Return the sparse matrix with these entries; entries at the same position are added."""
         data = np.bincount(places, np.concatenate(values), self.row.size)
         count = self.starts.size - 1
         return csc_array((data, self.row, self.starts), shape=(count, count))

@@ -51,8 +51,8 @@ class Network:
     def free(self) -> NDArray[np.intp]:
         """Return the indices of nodes with unknown pressure, from the end of the longest run of fixed ones.
 
-        If a groove is as long as the bearing is wide, neighbouring nodes are then near each other in this
-        order.
+        In this order neighbouring nodes have close indices even if a groove is as long as the bearing is
+        wide.
         """
         count = self.fixed.size
         around = np.arange(2 * count)
@@ -62,7 +62,10 @@ class Network:
         return np.asarray(order[~self.fixed[order]], np.intp)
 
     def loss(self, P: Array, void: Array) -> Array:
-        """Return the net outflow of each node: 0 where it balances, −inflow from outside at fixed nodes."""
+        """Return the net outflow of each node.
+
+        It is 0 where flows balance; at fixed nodes it is minus the inflow from outside.
+        """
         return np.asarray(self.A @ P + self.T @ (1 - void))
 
 

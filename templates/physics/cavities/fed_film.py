@@ -88,7 +88,7 @@ class Place:
         return float(np.arctan2(self.y[1], self.y[0]))
 
     def moved(self, step: Array) -> "Place":
-        """Return the position after a step of y, within the eccentricities that films can be solved for."""
+        """Return the position after a step of y, limited to eccentricities for which films can be solved."""
         y = self.y + step
         size = max(float(np.hypot(*y)), 1e-300)
         return Place(y * min(1.0, float(np.arctanh(ECCENTRICITY_LIMIT)) / size))
@@ -120,7 +120,7 @@ def fed_coefficients(eps: float, ratio: float, attitude: float, feed: Feed) -> t
 
     Returns
     -------
-    Both, NaN where the cavities do not converge.
+    Both matrices; NaN where the cavities do not converge.
     """
     try:
         film = linear_film(solved_ring(max(eps, _SMALLEST), ratio, feed.placed(attitude), 0.0, *_FINE))
@@ -205,7 +205,7 @@ class Search:
         return solved_ring(place.eps, self.ratio, grooves, 0.0, *mesh)
 
     def lack(self, place: Place, film: LinearFilm) -> Lack:
-        """Return the difference of force and load; `film` is in axes of the line of centres."""
+        """Return the difference between force and load; `film` is in the axes of the line of centres."""
         step = self._step_to_grooves if self.feed.grooves else self._step_with_line
         missing, displacement = step(place, film)
         share = float(np.hypot(*missing)) / self.load if self.load > 0 else np.inf
@@ -215,13 +215,13 @@ class Search:
         return Lack(share, along / (1 - place.eps**2) * radial + ahead * size / place.eps * turned)
 
     def _step_to_grooves(self, place: Place, film: LinearFilm) -> tuple[Array, Array]:
-        """Return the missing force and the displacement that supplies it, in axes of the line of centres."""
+        """Return the missing force, and the displacement that supplies it, in axes of the line of centres."""
         load = self.load * np.array([np.cos(place.attitude), -np.sin(place.attitude)])
         missing: Array = load - film.force
         return missing, np.asarray(np.linalg.solve(film.K, missing))
 
     def _step_with_line(self, place: Place, film: LinearFilm) -> tuple[Array, Array]:
-        """Return the missing force and the step along the line of centres; the film rotates as a whole."""
+        """Return the missing force, and the step along the line of centres; the film rotates as a whole."""
         borne = float(np.hypot(*film.force))
         missing = (self.load - borne) * film.force / borne
         along = (self.load - borne) / (film.force / borne @ film.K[:, 0])

@@ -44,7 +44,7 @@ class ColumnScaledSum:
     def of(cls, first: csc_array, second: csc_array) -> ColumnScaledSum:
         """Return the scaled sum of two square matrices of the same size.
 
-        It is cheapest if both have one pattern that includes the whole diagonal.
+        The sum is cheapest if both have the same sparsity pattern, which includes the whole diagonal.
         """
         count = first.shape[0]
         column = np.repeat(np.arange(count), np.diff(first.indptr))
@@ -73,7 +73,7 @@ class ColumnScaledSum:
         return cls(pattern, np.asarray(column, np.intp), values[0], values[1], np.flatnonzero(row == column))
 
     def among(self, unknowns: NDArray[np.intp]) -> ColumnScaledSum:
-        """Return the rows and columns of the given unknowns only, in their order."""
+        """Return the rows and columns of the given unknowns only, in the given order."""
         number = np.full(self.pattern.shape[0], -1)
         number[unknowns] = np.arange(unknowns.size)
         row, column = number[self.pattern.indices], number[self.column]

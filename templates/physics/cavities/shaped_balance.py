@@ -100,7 +100,7 @@ class BearingCase:
         return not self.feed.grooves and not self.bore.is_lobed
 
     def lie(self, e: Array) -> Lie:
-        """Return the position of the journal after a displacement by e."""
+        """Return the position of the journal after a displacement e."""
         return Lie(e, self.tilt)
 
 
@@ -125,14 +125,14 @@ class Balance:
 
     @property
     def is_settled(self) -> bool:
-        """Return whether three meshes carry the load and the last refinement changes little."""
+        """Return whether the load is carried on three meshes and the last refinement changed little."""
         step, _ = self._steps
         moved = float(np.hypot(*step)) <= SETTLED * self.fine.lie.eps
         return self.before is not None and moved and abs(self.fine.gap / self.coarse.gap - 1) <= SETTLED
 
     @property
     def is_asymptotic(self) -> bool:
-        """Return whether the changes fall with the square of the mesh size, or the last one is small."""
+        """Return whether the changes decrease with the square of the mesh size, or the last one is small."""
         step, previous = self._steps
         off = float(np.hypot(*(step - previous / 4)))
         return self.is_settled or (self.before is not None and off <= OFF_ORDER * float(np.hypot(*step)))
@@ -160,7 +160,10 @@ class Balance:
         return 2 * self._error(lambda refined: refined.film.side_flow, 1)
 
     def _error(self, value: Callable[[MeshEquilibrium], float], order: int) -> float:
-        """Return the relative change by the last refinement, or by the previous over its order if larger."""
+        """Return the relative change by the last refinement.
+
+        If the previous change divided by the expected reduction is larger, return that.
+        """
         coarse, fine = value(self.coarse), value(self.fine)
         previous = 0.0 if self.before is None else (coarse - value(self.before)) / 2**order
         return SAFETY * max(abs(fine - coarse), abs(previous)) / max(abs(fine), 1e-300)
@@ -172,7 +175,7 @@ class Balance:
 
     @property
     def _steps(self) -> tuple[Array, Array]:
-        """Return the displacement by the last refinement, and by the one before it."""
+        """Return the displacements by the last refinement and by the one before it."""
         e = self.coarse.lie.e
         return self.fine.lie.e - e, np.zeros(2) if self.before is None else e - self.before.lie.e
 
@@ -230,7 +233,7 @@ def _inside(loaded: BearingCase, e: Array) -> Array:
 
 
 def _refined(loaded: BearingCase, e: Array, meshes: Sequence[tuple[int, int]]) -> Balance:
-    """Return the balance on successive meshes, each started from the last, and on `FINER` if needed."""
+    """Return the balance on successive meshes, each started from the last one, and on `FINER` if needed."""
     films: list[MeshEquilibrium] = []
     for mesh in meshes:
         films.append(
@@ -249,7 +252,7 @@ def _refined(loaded: BearingCase, e: Array, meshes: Sequence[tuple[int, int]]) -
 def stable_film(
     loaded: BearingCase, e: Array, mesh: tuple[int, int], near: ShapedFilm | None
 ) -> MeshEquilibrium:
-    """Return the equilibrium on one mesh; it must resist slow displacement."""
+    """Return the equilibrium on one mesh; one that does not resist slow displacement is refused."""
     film, lie = _agreed(loaded, e, mesh, near)
     if np.linalg.det(film.linear[0]) <= 0:
         raise NoBalance("the equilibrium position found is not stable")

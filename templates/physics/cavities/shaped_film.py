@@ -65,15 +65,15 @@ class ShapedFilm:
         return self.borne(self.P)
 
     def borne(self, P: Array) -> Array:
-        """Return the force that a pressure exerts on the journal."""
+        """Return the force that a pressure field exerts on the journal."""
         return np.asarray(directions(self.nodes.phi[:-1]) @ (P * self.nodes.weight).sum(axis=1))
 
     @cached_property
     def couple(self) -> Array:
-        """Return the moment in the planes of x and y with the axis, (2,), over So's force times B/2.
+        """Return the moments in the planes of the axis and x or y, (2,), over the force of So times B/2.
 
-        It is taken about the middle, and positive where the film pushes the end zeta = 1 against x or y, that
-        is, against a positive tilt.
+        They are taken about the middle, and are positive if the film pushes the end zeta = 1 against x or y,
+        that is, against a positive tilt.
         """
         if self.nodes.is_half:
             return np.zeros(2)
@@ -96,7 +96,7 @@ class ShapedFilm:
 
     @cached_property
     def side_flow(self) -> float:
-        """Return the oil flow out of both ends, without that straight from a pocket, Q/(R³ psi omega_h)."""
+        """Return the oil flow out of both ends, except that directly from a pocket, Q/(R³ psi omega_h)."""
         loss = self.network.loss(self.solution.P, self.solution.void).reshape(self.nodes.shape)
         ends = [-1] if self.nodes.is_half else [0, -1]
         out = -sum(loss[:, end][~self.fed[:, end]].sum() for end in ends)
@@ -104,7 +104,7 @@ class ShapedFilm:
 
     @cached_property
     def peak(self) -> tuple[float, float]:
-        """Return the largest pressure and its angle from the load [rad], by a circumferential parabola."""
+        """Return the largest pressure and its angle from the load [rad], from a parabola around it."""
         i, j = np.unravel_index(self.P.argmax(), self.P.shape)
         n = self.nodes.shape[0]
         phi, column = self.nodes.phi[:-1], self.P[:, j]
@@ -131,7 +131,7 @@ class ShapedFilm:
         return K, B
 
     def _response(self) -> Callable[[Array], tuple[Array, Array]]:
-        """Return a function that computes the changes of pressure and void that compensate a loss of oil."""
+        """Return a function that computes the changes of pressure and void that balance a loss of oil."""
         free = ~self.network.fixed
         full = self.solution.void == 0 if self.conserving else self.solution.P > 0
         kept = free if self.conserving else free & full

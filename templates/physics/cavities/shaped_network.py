@@ -1,4 +1,4 @@
-"""Flow balances of a film with a given gap on a ring of nodes, and their derivatives by the gap.
+"""Flow balances of a film with a given gap on a ring of nodes, and derivatives with respect to the gap.
 
 This is like `cavitating_network`, but the gap may also vary axially. A tilted journal needs the whole width,
 a bore with lobes or a bell mouth only half of it. Angles are measured from the load.
@@ -93,7 +93,7 @@ class Gaps:
 def shaped_nodes(bore: Bore, lie: Lie, ratio: float, pockets: list[Pocket], n: int, m: int) -> Nodes:
     """Return a mesh graded to the thin film, with nodes at pocket edges, lobe joints and bell mouths.
 
-    It is the mesh of a plain bearing with the same least film and the lobe's radius.
+    It is the mesh of a plain bearing with the same least film and the radius of the lobe.
     """
     least, place = narrowest(bore, lie)
     radius = 1 + (bore.excess if bore.is_lobed else 0.0)
@@ -108,7 +108,7 @@ def shaped_nodes(bore: Bore, lie: Lie, ratio: float, pockets: list[Pocket], n: i
 
 
 def _moved_to(nodes: Array, places: Array) -> Array:
-    """Return the nodes with the inner node nearest to each place moved onto it; no node is moved twice."""
+    """Return the nodes after moving the inner node nearest to each place onto it; no node is moved twice."""
     nodes, held = nodes.copy(), np.zeros(nodes.size, bool)
     for place in np.unique(places[(places > nodes[0]) & (places < nodes[-1])]):
         k = 1 + int(np.abs(nodes[1:-1] - place).argmin())
@@ -118,10 +118,10 @@ def _moved_to(nodes: Array, places: Array) -> Array:
 
 
 def gaps(nodes: Nodes, bore: Bore, lie: Lie) -> Gaps:
-    """Return the gap at the positions where the balances need it.
+    """Return the gap at the positions where the flow balances need it.
 
-    The gap may jump where lobes meet: the gap of that node is the mean of 1/H over the half cells on both
-    sides.
+    The gap may jump where lobes meet: at such a node the balances use the mean of 1/H over the half cells on
+    both sides.
     """
     phi, zeta = nodes.phi[:-1], nodes.zeta
     ahead = np.diff(nodes.phi)[:, None]
@@ -135,7 +135,7 @@ def gaps(nodes: Nodes, bore: Bore, lie: Lie) -> Gaps:
 
 
 def displaced(nodes: Nodes) -> tuple[Gaps, Gaps]:
-    """Return the derivative of the gap by the journal's displacement along and ahead of the load."""
+    """Return how the gap changes with the journal's displacement along and ahead of the load."""
     n, m = nodes.shape
     at_nodes, between = directions(nodes.phi[:-1]), directions(midpoints(nodes.phi))
 

@@ -139,7 +139,7 @@ def _by_eps(
     loss: Array,
     motion: tuple[float, float],
 ) -> list[Array]:
-    """Return the derivative of the loss by each component of the eccentricity."""
+    """Return the derivative of the loss with respect to each component of the eccentricity."""
     nudge = _NUDGE * (1 - np.hypot(*eps))
     moved = (balance(journal, eps + nudge * axis, *motion) for axis in np.eye(2))
     return [(_loss(flows, P, void, stored) - loss) / nudge for flows in moved]

@@ -74,7 +74,7 @@ class ClosedCylinder:
 
     @cached_property
     def initial(self) -> Array:
-        """Return p₁V₁^γ over (dead volume)^γ [Pa], (…, 1)."""
+        """Return p₁V₁^γ divided by (dead volume)^γ [Pa], (…, 1)."""
         ratio = self.volume(_column(self.closes)) / _column(self.dead)
         return _column(self.pressure_closed) * ratio ** _column(self.gamma)
 
@@ -158,7 +158,7 @@ def cycle_pressure(cylinder: ClosedCylinder, theta: Array, p_s: Array, p_e: Arra
 
 @units(None, "rad", returns="1")
 def burnt_share(cylinder: ClosedCylinder, theta: Array) -> Array:
-    """Return the burnt fraction over the cycle [1], (…, K); 0 from the next intake stroke on."""
+    """Return the burnt fraction over the cycle [1], (…, K); it returns to 0 at the next intake stroke."""
     return cylinder.burning.share(theta)
 
 
@@ -197,7 +197,7 @@ class Peak:
 def highest(cylinder: ClosedCylinder, p_s: Array, p_e: Array) -> Peak:
     """Return the largest pressure of the cycle, independent of the angles at which the curve is returned.
 
-    It is searched for at each degree and at the ends of combustion, then ever more closely around the best
+    It is searched at each degree and at the ends of combustion, then on ever finer grids around the best
     angle.
     """
     b = cylinder.burning
@@ -237,7 +237,7 @@ def four_stroke_angles(steps: Array) -> Array:
 
 @units("J", "J", "J", "J", returns="1", latex=r"\frac{{{0}-{1}-{2}}}{{{0}+{3}}}")
 def unbalanced_share(heat: Array, work: Array, change: Array, scale: Array) -> Array:
-    """Return heat minus work minus change of internal energy, over heat and a scale of the charge [1].
+    """Return heat minus work minus change of internal energy, over heat plus the charge's energy [1].
 
     Values below 1e-9 are returned as 0.
     """

@@ -175,9 +175,10 @@ class CrankFrame:
         return ends
 
     def flexibility(self, count: int, webs: Array) -> Flexibility:
-        """Return the displacements of the mains under forces on themselves, `count` rods and the webs [m].
+        """Return the displacements of the mains under unit forces [m].
 
-        The result is NaN if the sections differ so much that rounding dominates.
+        The forces act on the mains, on `count` rods and on the webs. The result is NaN if the sections differ
+        so much that rounding dominates.
         """
         size = 6 * len(self.frame.nodes)
         drive = self.axis[-1][1]

@@ -90,7 +90,7 @@ class SupportReactions:
 def with_play(
     mains: Array, loads: ShaftLoads, shafts: Sequence[Flexibility], supports: Supports, theta: Array
 ) -> SupportReactions:
-    """Return the loads of mains with clearance; all points share one shaft, or each has its own."""
+    """Return the loads of mains with clearance; all points may share one shaft, or each has its own."""
     turn = np.exp(1j * theta)[..., None, :]
     shape = loads.forces.shape[:-2]
     points = loads.forces.reshape(-1, *loads.forces.shape[-2:])
@@ -150,7 +150,7 @@ class _Play:
         return SupportReactions(pairs[:, 0] + 1j * pairs[:, 1], left)
 
     def _settled(self, x: Array, first: Array, free: Array, stiff: Array, small: Array) -> Array:
-        """Return the solution of Newton's method from x, damped by the energy separately at each angle."""
+        """Return the solution of Newton's method started at x; the energy damps the steps at each angle."""
         if not x.size:
             return x
         for _ in range(_STEPS):
@@ -170,7 +170,7 @@ class _Play:
     def _damped(
         self, x: Array, step: Array, slope: Array, look: Callable[[Array], tuple[Array, Array]]
     ) -> Array:
-        """Return the length of each step for which the energy decreases, or else its gradient.
+        """Return the length of each step at which the energy, or near the solution its gradient, decreases.
 
         Near the solution, differences of energy are dominated by rounding error.
         """

@@ -81,7 +81,7 @@ class BoreFilm(SoftFilm):
 
     @cached_property
     def bent(self) -> Array:
-        """Return the (36, nodes) deformation in each mode that bends the bore, per nodal pressure."""
+        """Return the (36, nodes) deformation per nodal pressure in each mode that bends the bore."""
         weight = np.outer(self.mesh.weight_phi, self.mesh.weight_zeta) * self.softness.share / (4 * np.pi)
         taken = (self.shapes * weight[..., None]).reshape(self.P.size, len(MODES))
         return np.asarray(self.softness.matrix[BENDING] @ taken.T)
@@ -94,12 +94,15 @@ class BoreFilm(SoftFilm):
 
     @cached_property
     def amplitudes_of(self) -> Array:
-        """Return (M, nodes) deformations per nodal pressure: non-zero ones of the half-plane, then modes."""
+        """Return the (M, nodes) deformations per nodal pressure.
+
+        The non-zero ones of the half-plane come first, then those of the modes.
+        """
         plain = SoftFilm(self.mesh, self.ratio, self.softness, self.modes, self.eps, self.P).amplitudes_of
         return np.concatenate([plain[self.modes.compliance != 0], self.bent])
 
     def jacobian(self, film: Mask) -> tuple[csc_array, Array, Array]:
-        """Return the derivatives of the loss inside the film by P, by the amplitudes and by eps."""
+        """Return the derivatives of the loss inside the film with respect to P, the amplitudes and eps."""
         matrix, plain, by_eps = super().jacobian(film)
         shapes = self.shapes[..., BENDING]
         around, across = (shapes[:-1] + shapes[1:]) / 2, (shapes[:, :-1] + shapes[:, 1:]) / 2
@@ -116,7 +119,7 @@ class BoreFilm(SoftFilm):
 
     @cached_property
     def _by_gap(self) -> tuple[Array, Array]:
-        """Return the derivatives of circumferential (n, m + 1) and axial (n + 1, m) flows by the gap."""
+        """Return how circumferential (n, m + 1) and axial (n + 1, m) flows change with the gap."""
         H, eta, _, rise = self.around
         H_side, eta_side, _, rise_side = self.across
         width, cells = dual_widths(self.mesh.zeta), dual_widths(self.mesh.phi)[:, None] / self.ratio**2
@@ -170,7 +173,7 @@ def attitude(film: SoftFilm) -> float:
 
 
 def confirmed(found: FilmEquilibrium, So: float, to_load: float) -> FilmEquilibrium:
-    """Return the film whose attitude agrees with the turn of its bore, starting from a nearby film.
+    """Return the film whose attitude agrees with the turn of its bore; the search starts from a nearby film.
 
     Raises
     ------
@@ -192,7 +195,7 @@ def confirmed(found: FilmEquilibrium, So: float, to_load: float) -> FilmEquilibr
 
 
 def _nearer(found: FilmEquilibrium, So: float, turn: float, step: float) -> FilmEquilibrium:
-    """Return the equilibrium after a step of the turn, which is shortened until the search converges."""
+    """Return the equilibrium after a change of the turn, which is shortened until the search converges."""
     for _ in range(_SHORTER):
         try:
             return _turned(found, So, turn + step)
@@ -218,5 +221,5 @@ def _softness(found: FilmEquilibrium) -> BoreSoftness:
 
 
 def _wrapped(angle: float) -> float:
-    """Return the angle wrapped to within half a revolution."""
+    """Return the angle wrapped to at most half a revolution."""
     return float((angle + np.pi) % (2 * np.pi) - np.pi)

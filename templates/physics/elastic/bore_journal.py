@@ -110,7 +110,7 @@ def bore_film_at(
 
 
 def _softness(one: Elasticity, matrix: Array, share: float) -> BoreSoftness:
-    """Return the dimensionless compliances; without a matrix the half-plane is rigid too."""
+    """Return the dimensionless compliances; if no matrix is given, the half-plane is rigid too."""
     per_gap = float(one.pressure / one.clearance)
     tail = per_gap * half_plane(one.inner, one.modulus, one.poisson) * bool(matrix.any())
     return BoreSoftness(
@@ -122,7 +122,10 @@ def _softness(one: Elasticity, matrix: Array, share: float) -> BoreSoftness:
 def _changed(
     So: float, ratio: float, softness: BoreSoftness, to_load: float, stiff: dict[str, float]
 ) -> dict[str, float]:
-    """Return the rigid film's values with the changes found on the meshes; eps infinite without a film."""
+    """Return the values of the rigid film, corrected by the changes found on the meshes.
+
+    Without a film, eps is infinite.
+    """
     unborne = dict.fromkeys(stiff, np.nan) | {"eps": np.inf}
     if not (np.isfinite(softness.liner + softness.share + to_load) and np.isfinite(softness.ring).all()):
         return unborne
@@ -143,7 +146,7 @@ def _changed(
 
 
 def _change(before: dict[str, float], after: dict[str, float]) -> dict[str, float]:
-    """Return the changes: logarithms of ratios, differences of angles, and values of the elastic film."""
+    """Return the changes (logarithms of ratios, differences of angles), and values of the elastic film."""
     change = {name: float(np.log(after[name] / before[name])) for name in _RATIOS}
     change |= {name: after[name] - before[name] for name in _DIFFERENCES}
     return change | {name: after[name] for name in _OWN}
@@ -171,9 +174,9 @@ def neglected_in_bore(
     radius, width
         Radius and width of the bearing [m].
     liner
-        Deformation of the liner per pressure; 0 without one [m/Pa].
+        Deformation of the liner per unit of pressure; 0 without a liner [m/Pa].
     inner, outer
-        Radii of the housing; NaN without one [m].
+        Radii of the housing; NaN without a housing [m].
     modulus, poisson
         Young's modulus [Pa] and Poisson's ratio [-] of the housing.
     rows

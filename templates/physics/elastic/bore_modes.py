@@ -78,7 +78,7 @@ def is_square(rows: Rows) -> Truth:
 
 @units(None, returns="1")
 def is_mutual(rows: Rows) -> Truth:
-    """Return whether a matrix is symmetric; true if it is not square, which another rule checks."""
+    """Return whether a matrix is symmetric; true if it is not square, because another rule reports that."""
     if len(rows) != len(MODES):
         return True
     C = np.array(rows)

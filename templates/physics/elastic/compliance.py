@@ -96,7 +96,7 @@ def _michell(ratio: Array, nu: Array, n: Array) -> Array:
     )  # decay of increasing powers to the inner face and of decreasing ones to the outer face
 
     def stresses(power: Array, at: Array, r: Array) -> tuple[Array, Array]:
-        """Return radial and shear stress of r**power, of magnitude `at` at the face, for a = 1."""
+        """Return radial and shear stress of the term r**power, with magnitude `at` at the face, for a = 1."""
         return (power - n**2) * at / r**2, n * (power - 1) * at / r**2
 
     outside = 1 / q * one

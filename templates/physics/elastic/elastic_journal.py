@@ -44,10 +44,10 @@ class Elasticity:
     """The elastic data of liner, housing and oil, in SI; arrays that broadcast together."""
 
     liner: Array
-    """Deformation of the liner per pressure; 0 without one [m/Pa]."""
+    """Deformation of the liner per unit of pressure; 0 without a liner [m/Pa]."""
     inner: Array
     outer: Array
-    """Radii of the housing; NaN without one [m]."""
+    """Radii of the housing; NaN without a housing [m]."""
     modulus: Array
     """Young's modulus of the housing [Pa]."""
     poisson: Array
@@ -156,7 +156,10 @@ def _softness(level: str, one: Elasticity) -> Softness:
 
 
 def _changed(So: float, ratio: float, softness: Softness, stiff: dict[str, float]) -> dict[str, float]:
-    """Return the rigid film's values with the changes found on the meshes; eps infinite without a film."""
+    """Return the values of the rigid film, corrected by the changes found on the meshes.
+
+    Without a film, eps is infinite.
+    """
     unborne = dict.fromkeys(stiff, np.nan) | {"eps": np.inf}
     if not (np.isfinite(softness.liner) and np.isfinite(softness.ring).all()):
         return unborne
@@ -176,7 +179,7 @@ _RATIOS = ("least", "P_max", "shear", "load_couple", "side_flow")
 
 
 def _changes(So: float, ratio: float, softness: Softness, eps: float) -> list[dict[str, float]]:
-    """Return, for each mesh, logarithms of ratios, differences of angles, deformation and viscosity ratio."""
+    """Return for each mesh the changes as logarithms and angles, the deformation and the viscosity ratio."""
     soft: FilmEquilibrium | None = None
     changes = []
     for mesh in MESHES:
@@ -214,7 +217,7 @@ def measured(film: SoftFilm) -> dict[str, float]:
 
 
 def _peak(film: SoftFilm) -> tuple[float, float]:
-    """Return angle (from the narrowest gap of the rigid bore) and height of the largest pressure.
+    """Return the angle (from the narrowest gap of the rigid bore) and the value of the largest pressure.
 
     Both are taken from a parabola through three nodes.
     """
@@ -246,12 +249,15 @@ def roelands_exponent(alpha: Array, eta: Array) -> Array:
 
 @units("m", "m", returns="1", latex=r"\frac{{{0}}}{{{1}}}")
 def wall_ratio(outer: Array, inner: Array) -> Array:
-    """Return outer over inner diameter of a housing; 1 (no housing) if the outer one is not given [-]."""
+    """Return outer over inner diameter of a housing; 1 (no housing) if no outer diameter is given [-]."""
     return np.where(np.isnan(outer), 1.0, outer / inner)[()]
 
 
 def mean_pressure(p_max: Array, load: Array, radius: Array, width: Array) -> Array:
-    """Return the harmonics (..., 41) of the axial mean pressure, 2/3 of the largest, about its peak [Pa]."""
+    """Return the harmonics (..., 41) of the axial mean pressure about its peak [Pa].
+
+    The axial mean is 2/3 of the largest pressure.
+    """
     mean = np.asarray(2 / 3 * p_max)
     with np.errstate(invalid="ignore", divide="ignore"):
         half = np.clip(load / (radius * width * np.where(mean > 0, mean, np.nan)), 1e-6, np.pi)
@@ -284,9 +290,9 @@ def neglected_deformation(
     radius, width
         Radius and width of the bearing [m].
     liner
-        Deformation of the liner per pressure; 0 without one [m/Pa].
+        Deformation of the liner per unit of pressure; 0 without a liner [m/Pa].
     inner, outer
-        Radii of the housing; NaN without one [m].
+        Radii of the housing; NaN without a housing [m].
     modulus, poisson
         Young's modulus [Pa] and Poisson's ratio [-] of the housing.
     """
@@ -302,7 +308,8 @@ def neglected_deformation(
 def deflection_in_steel(p_max: Array, load: Array, radius: Array, width: Array) -> Array:
     """Estimate the displacement of a bore in an infinite steel body under the largest pressure [m].
 
-    The shape of the pressure is that of `neglected_deformation`; this is its lower limit.
+    The shape of the pressure is that of `neglected_deformation`. The estimate is a lower limit of that
+    deformation.
 
     Parameters
     ----------

@@ -50,7 +50,7 @@ class FilmEquilibrium:
 
 
 def rigid_balance(So: float, ratio: float, eps: float, around: int, across: int) -> FilmEquilibrium:
-    """Return the rigid film under a load, on a mesh graded to an eccentricity near that of the film."""
+    """Return the film of a rigid bearing under a load, on a mesh graded to nearly its eccentricity."""
     mesh = ring_mesh(eps, ratio, around, across)
     stiff = Softness(0.0, np.zeros(1))
     solved = rupture(journal_equations(eps, ratio, mesh))
@@ -86,7 +86,7 @@ def soft_balance(So: float, softness: Softness, rigid: FilmEquilibrium) -> FilmE
 
 
 def _shared(So: float, softness: Softness, at: FilmEquilibrium) -> FilmEquilibrium:
-    """Return the film at a fraction of the compliance, on the present mesh and on one graded to its gap."""
+    """Return the film at a fraction of the compliance, on the present mesh, then on one graded to its gap."""
     film = replace(at.film, softness=softness, modes=modes(at.film.mesh, softness.ring))
     film = replace(film, eps=_opened(film, at.film))
     found = settled(film, at.inside, So, at.graded, at.steps)
@@ -103,7 +103,7 @@ def _opened(film: SoftFilm, before: SoftFilm) -> float:
 
 
 def carried(found: FilmEquilibrium, So: float, around: int, across: int) -> FilmEquilibrium:
-    """Return the film on a mesh of this number of intervals that is graded to its gap."""
+    """Return the film on a mesh with the given number of intervals that is graded to its gap."""
     film, own = found.film, found.film.mesh
     least = min(max(float(film.H.min()), 1e-7), 1.0)
     mesh = ring_mesh(1 - least, film.ratio, around, across)
@@ -164,7 +164,7 @@ def _step(film: SoftFilm, inside: Mask, So: float) -> tuple[Array, float]:
 
 
 def _kept(film: SoftFilm, dP: Array, deps: float) -> float:
-    """Return the fraction of a step that leaves 30 % of the gap everywhere."""
+    """Return the fraction of a step that leaves at least 30 % of the gap everywhere."""
     after = replace(film, P=film.P + dP, eps=film.eps + deps)
     worst = float(((film.H - after.H) / film.H).max())
     return min(1.0, 0.7 / worst) if worst > 0 else 1.0

@@ -50,7 +50,7 @@ class Softness:
         return Softness(share * self.liner, share * self.ring, self.size, self.scale, share * self.power)
 
     def thickening(self, P: Array) -> tuple[Array, Array]:
-        """Return the viscosity relative to ambient pressure, and its derivative by P."""
+        """Return the viscosity relative to that at ambient pressure, and its derivative with respect to P."""
         if self.power == 0 or self.scale == 0:
             return np.ones_like(P), np.zeros_like(P)
         base = 1 + self.scale * np.maximum(P, 0)
@@ -138,7 +138,7 @@ class SoftFilm:
         return _gathered(onward * width, outward)
 
     def jacobian(self, film: Mask) -> tuple[csc_array, Array, Array]:
-        """Return the derivatives of the loss inside the film by P, by the ring's amplitudes and by eps.
+        """Return the derivatives of the loss in the film with respect to P, the ring's amplitudes and eps.
 
         Parameters
         ----------
@@ -147,7 +147,7 @@ class SoftFilm:
 
         Returns
         -------
-        The matrix over all nodes, (nodes, M) and (nodes,).
+        The matrix over all nodes, and arrays (nodes, M) and (nodes,).
         """
         H, eta, bend, rise = self.around
         width = dual_widths(self.mesh.zeta)
@@ -191,7 +191,7 @@ class SoftFilm:
 
     @cached_property
     def force(self) -> Array:
-        """Return the (2,) force of this pressure."""
+        """Return the force of the present pressure, (2,)."""
         return np.asarray(self.force_of @ self.P.ravel())
 
 
@@ -206,7 +206,7 @@ def _gathered(onward: Array, outward: Array) -> Array:
 
 
 def _assembled(around: tuple[Array, Array], across: tuple[Array, Array], film: Mask) -> csc_array:
-    """Return the matrix from the derivatives of each flow by the pressures at its two ends.
+    """Return the matrix of the derivatives of each flow with respect to the pressures at its two ends.
 
     Outside the film it is the unit matrix.
     """

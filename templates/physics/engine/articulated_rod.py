@@ -92,7 +92,7 @@ class ArticulatedCrank(OffsetCrank):
 
 @dataclass(frozen=True)
 class ArticulatedMotion(RodMotion):
-    """Positions of rods and pistons, and their derivatives by the crank angle, (…, N, K)."""
+    """Positions of rods and pistons, and their derivatives with respect to the crank angle, (…, N, K)."""
 
     crank: ArticulatedCrank
     alpha: Array
@@ -118,7 +118,7 @@ class ArticulatedMotion(RodMotion):
 
     @cached_property
     def lever(self) -> Vectors:
-        """Return the vector from the crankpin to the pin [m], in the axes of the own cylinder."""
+        """Return the vector from the crankpin to the pin [m], in the axes of the rod's own cylinder."""
         return self._arm * self._back
 
     @cached_property
@@ -175,7 +175,7 @@ class ArticulatedMotion(RodMotion):
 def carriers(masters: Array, count: int) -> Numbers:
     """Return the index of the cylinder that carries each rod.
 
-    It is the cylinder itself if none is named, or if a name is not a cylinder.
+    It is the cylinder itself if no master is named, or if the name is not a cylinder.
     """
     itself = np.arange(count)
     if np.shape(masters) != (count,):
@@ -231,14 +231,14 @@ def walls_with_articulated(walls: Array, motion: RodMotion, rods: Vectors) -> Ar
 
 
 def link_force(at_crank: Array, omega: Array, motion: RodMotion, axial: Array, wall: Array) -> Vectors:
-    """Return the complex force of each rod on its own pin in its cylinder's axes [N], (…, N, K)."""
+    """Return the complex force of each rod on its pin, in the axes of its cylinder [N], (…, N, K)."""
     if not isinstance(motion, ArticulatedMotion):
         return pin_force(at_crank, omega, motion, axial, wall)
     return np.asarray(-(at_crank * omega**2)[..., None] * motion.pin2 - axial - 1j * wall)
 
 
 def off_the_circle(at_crank: Array, omega: Array, motion: RodMotion, bank: Array) -> Vectors:
-    """Return the force on the frame [N] of masses at articulated pins, beyond that on the crankpin circle."""
+    """Return the force on the frame [N] of masses at articulated pins, beyond that at the crankpin."""
     if not isinstance(motion, ArticulatedMotion):
         return np.zeros(1, dtype=complex)
     circle = motion.crank.r[..., None] * (motion.cos + 1j * motion.sin)
@@ -249,7 +249,8 @@ def off_the_circle(at_crank: Array, omega: Array, motion: RodMotion, bank: Array
 def on_big_ends(pins: Vectors, motion: RodMotion) -> Vectors:
     """Return the big-end loads [N].
 
-    A master rod loads the crankpin with all that it carries; other rods load their own pins.
+    A master rod loads the crankpin with the loads of all rods that it carries; other rods load their own
+    pins.
     """
     if not isinstance(motion, ArticulatedMotion):
         return pins

@@ -68,7 +68,7 @@ class Arrangement:
 
 
 def _sum(weight: Array | float, angle: Array) -> Phasor:
-    """Return the sum of weighted directions; exactly 0 where it is only rounding error."""
+    """Return the sum of weighted directions; exactly 0 where it consists only of rounding error."""
     weight = np.broadcast_to(weight, np.shape(weight * angle))
     total = np.sum(weight * np.exp(1j * angle), axis=-1)
     vanishes = np.abs(total) <= _VANISHES * np.sum(np.abs(weight), axis=-1)

@@ -62,7 +62,7 @@ class Parts:
         return self._sum(reference)
 
     def _sum(self, reference: Array | None) -> Vectors:
-        """Return the sum over all parts, each multiplied by its arm; 0 where it is only rounding error."""
+        """Return the sum over all parts, each multiplied by its arm; mere rounding error is set to 0."""
         total, size = np.zeros((), complex), np.zeros(())
         for forces, places in ((self.pistons, self.cylinder_places), *self.rotors):
             arm = 1.0 if reference is None else (places - np.asarray(reference)[..., None])[..., None]
@@ -156,7 +156,7 @@ def _areas(T: Array, grid: CrankGrid) -> list[list[Area]]:
 
 @units("rad", None, None, returns="J")
 def area_curve(theta: Array, T: Array, grid: CrankGrid) -> Array:
-    """Return at each returned angle [rad] the whole area [J] to which it belongs, (…, K); 0 without one."""
+    """Return at each returned angle [rad] the whole area [J] that contains the angle, (…, K); else 0."""
     curves = np.zeros((max(1, T.size // T.shape[-1]), theta.size))
     for curve, areas in zip(curves, _areas(T, grid), strict=True):
         for area in areas:

@@ -34,7 +34,7 @@ class OffsetPolytropic(Polytropic):
         return np.max(value, axis=-1)
 
     def way(self, angle: Array | float) -> Array:
-        """Return the travel of each piston from top dead centre, over its stroke."""
+        """Return the travel of each piston from top dead centre, relative to its stroke."""
         turned = np.asarray(angle + self.crank.top)[..., None]
         return self.crank.travel(turned)[..., 0]
 
@@ -64,7 +64,7 @@ class OffsetTabulatedCycle(TabulatedCycle):
     crank: OffsetCrank
 
     def mean_effective(self) -> Array:
-        """Return the work of a cycle over the swept volume [Pa]: −dp/dθ times the integral of the travel."""
+        """Return the work of a cycle over the swept volume [Pa]: −dp/dθ times the integral of travel."""
         width = np.diff(self.angle, append=self.angle[0] + self.cycle)
         count = 6 + int(np.ceil(_NODES_A_RADIAN * width.max()))
         node, weight = np.polynomial.legendre.leggauss(count)

@@ -87,7 +87,7 @@ def arranged(
     top: Array,
     gas_cycle: str,
 ) -> Layout:
-    """Return the layout from the lists that are given; NaN where there is none, which a rule refuses.
+    """Return the layout from the lists that are given; NaN where no layout exists, which a rule refuses.
 
     Without gas pressures, a cylinder without firing data is treated as if it fired in the first revolution.
     """
@@ -136,7 +136,7 @@ def _timed(order: Array, base: Array, cycle: float) -> Array:
 
 
 def _evenness(intervals: Array) -> list[float]:
-    """Return the key to sort sets of intervals: the intervals in ascending order."""
+    """Return a key for sorting sets of intervals: the intervals in ascending order."""
     return [float(gap) for gap in np.sort(np.round(intervals, 9))]
 
 
@@ -160,7 +160,7 @@ def is_one_layout(order: Array, pins: Array, firing: Array) -> Truth:
 
 @units("1", "rad", "rad", returns="1")
 def is_order(order: Array, pins: Array, firing: Array) -> Truth:
-    """Return whether a firing order, if given, names every cylinder from 1 once."""
+    """Return whether a firing order, if given, names every cylinder exactly once, counted from 1."""
     if not listed(order):
         return True
     count = count_of(order, pins, firing)
@@ -183,7 +183,7 @@ def _is_near(one: Array, other: Array, period: float) -> bool:
 
 @units(None, returns="1")
 def has_times(layout: Layout) -> Truth:
-    """Return whether firing angles within one cycle exist that fit both the order and the pin angles."""
+    """Return whether there are firing angles within one cycle that fit both the order and the pin angles."""
     return bool(np.isfinite(layout.firing).all())
 
 

@@ -14,7 +14,7 @@ MOST_VALUES = 6_000_000
 
 
 def each(value: Array) -> Array:
-    """Return an input with a last axis for the cylinders, (..., cylinders), in its unit."""
+    """Return an input with a last axis for the cylinders, (..., cylinders), in the unit of the input."""
     return np.atleast_1d(value)
 
 
@@ -70,12 +70,12 @@ def is_one_list(values: Array) -> Truth:
 
 @units(None, None, "1", "rad", returns="1")
 def is_manageable(points: tuple[int, ...], throw: NDArray[np.intp], strokes: Array, step: Array) -> Truth:
-    """Return whether the curves of all cylinders at so many points fit into memory."""
+    """Return whether the curves of all cylinders at this number of points fit into memory."""
     return bool(np.prod(points, dtype=float) * throw.size * angles_in(strokes, step) <= MOST_VALUES)
 
 
 def or_none(value: Array) -> Array:
-    """Return an optional list in its unit; empty if missing."""
+    """Return an optional list in its unit; an empty list if it is missing."""
     return np.atleast_1d(value) if np.ndim(value) else np.zeros(0)
 
 

@@ -23,7 +23,7 @@ _QUARTER = np.pi / 2
 
 @units(None, None, None, returns="1")
 def known_for(name: str, cycles: tuple[str, ...], value: Array) -> Truth:
-    """Return whether a value is given at each point, if the cycle is one of those that need it."""
+    """Return whether a value is given at each point whose cycle needs the value."""
     return np.logical_or(name not in cycles, ~np.isnan(value))
 
 
@@ -61,7 +61,7 @@ def end_of_compression(name: str, gas: Callable[[], GasCycle]) -> Array:
 
 @units(None, "rad", "Pa", returns="1")
 def angles_rise(name: str, angle: Array, p: Array) -> Truth:
-    """Return whether the angles of a table are missing, or one ascending list with an angle per pressure."""
+    """Return whether a table has no angles, or one ascending list with an angle for each pressure."""
     if name != "table" or np.ndim(angle) == 0:
         return True
     return np.ndim(angle) == 1 and np.shape(p)[-1:] == angle.shape and bool((np.diff(angle) > 0).all())
@@ -101,7 +101,7 @@ def crankcase_is_filled(name: str, p_c: Array) -> Truth:
 
 @units(None, "Pa", returns="Pa")
 def lowest_of_table(name: str, p: Array) -> Array:
-    """Return the lowest pressure [Pa] of a table; 0, which fits both scales, without a table."""
+    """Return the lowest pressure [Pa] of a table; without a table 0, which fits absolute and gauge scales."""
     return np.min(p, axis=-1) if name == "table" and np.ndim(p) else np.asarray(0.0)
 
 
@@ -119,5 +119,5 @@ def absolute_crankcase() -> float:
 
 @units(None, "1", "rad", returns="1")
 def is_manageable(points: tuple[int, ...], strokes: Array, step: Array) -> Truth:
-    """Return whether curves over the internal grid of angles at so many points fit into memory."""
+    """Return whether curves over the internal grid of angles fit into memory at this number of points."""
     return bool(math.prod(points) * angles_in(strokes, step) <= MOST_VALUES)

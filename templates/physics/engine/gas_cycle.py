@@ -81,7 +81,7 @@ class Polytropic(GasCycle):
         return value
 
     def pressure(self, theta: Array, travel: Array) -> Array:
-        """Return the pressure according to the event in which each angle lies."""
+        """Return the pressure, computed for the event of the cycle in which each angle lies."""
         c = self.charge
         start = _column(self.exchange_begins)
         place = (theta - start + _SAME) % self.cycle - _SAME
@@ -151,7 +151,7 @@ class Polytropic(GasCycle):
         return self.v_dead + self.way(angle)
 
     def way(self, angle: Array | float) -> Array:
-        """Return the travel of the piston from top dead centre over the stroke, at one angle per point."""
+        """Return the travel of the piston from top dead centre over its stroke, at one angle per point."""
         return _travel(angle, self.n)
 
     def way_between(self, begin: Array, end: Array) -> Array:
@@ -184,7 +184,7 @@ class Polytropic(GasCycle):
         return np.stack(np.broadcast_arrays(*events), axis=-1)
 
     def _linear_work(self, begin: Array, end: Array, p_1: Array, p_2: Array) -> Array:
-        """Return the work while the pressure changes linearly in angle from p_1 to p_2; 0 if at once."""
+        """Return the work while the pressure changes linearly in angle from p_1 to p_2; 0 if instantly."""
         angle = end - begin
         slope = (p_2 - p_1) / np.where(angle > 0, angle, 1)
         work = p_2 * self.way(end) - p_1 * self.way(begin) - slope * self.way_between(begin, end)

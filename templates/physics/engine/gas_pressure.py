@@ -24,7 +24,7 @@ class GasCycle(ABC):
 
     @abstractmethod
     def pressure(self, theta: Array, travel: Array) -> Array:
-        """Return the pressure [Pa] at crank angles theta [rad]; `travel` there is relative to the stroke."""
+        """Return the pressure [Pa] at crank angles theta [rad]; `travel` there is a share of the stroke."""
 
     @abstractmethod
     def mean_effective(self) -> Array:
@@ -113,7 +113,7 @@ def peak_pressure(name: str, p: Array) -> Array:
 
 
 def one_cycle(angle: Array, p: Array, cycle: float) -> tuple[Array, Array]:
-    """Return angles [rad] and pressures [Pa] of a table without the repeated last point.
+    """Return angles [rad] and pressures [Pa] of a table, without a last point that repeats the first.
 
     The steps are equal if no angles are given.
     """

@@ -50,13 +50,13 @@ class Harmonics:
 
     @cached_property
     def there(self) -> Phasor:
-        """Return the vector where its magnitude is largest."""
+        """Return the vector at the angle where its magnitude is largest."""
         turn = np.exp(1j * self.largest_at)
         return self.forward * turn + self.backward / turn
 
 
 def _sum(weight: Phasor, angle: Array) -> Phasor:
-    """Return the sum over the cylinders, (…, H); exactly 0 where it is only rounding error."""
+    """Return the sum over the cylinders, (…, H); exactly 0 where it consists only of rounding error."""
     total = np.sum(weight * np.exp(1j * angle), axis=-2)
     vanishes = np.abs(total) <= _VANISHES * np.sum(np.abs(weight), axis=-2)
     return np.where(vanishes, 0, total)
@@ -153,7 +153,7 @@ def direction(phasor: Phasor) -> Array:
 def rotating_sum(parts: Sequence[tuple[Phasor, Array]], omega: Array, reference: Array | None) -> Phasor:
     """Return force [N] and couple about a reference [N m] of unbalances [kg m], (…, L), at places [m], (L,).
 
-    Both are exactly 0 where they are only rounding error.
+    Both are exactly 0 where they consist only of rounding error.
     """
     total, size = np.zeros((), complex), np.zeros(())
     for unbalance, places in parts:

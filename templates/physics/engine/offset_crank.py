@@ -66,7 +66,7 @@ class OffsetCrank:
 
 @dataclass(frozen=True)
 class RodMotion:
-    """Positions of rod and piston, and their derivatives by the crank angle `alpha` [rad], (…, N, K)."""
+    """Positions of rod and piston, and derivatives with respect to crank angle `alpha` [rad], (…, N, K)."""
 
     crank: OffsetCrank
     alpha: Array
@@ -166,7 +166,7 @@ def _at_all_cylinders(holds: NDArray[np.bool_]) -> Truth:
 def rod_masses(mass: Array, centre: Array, inertia: Array, rod: Array) -> RodMasses:
     """Return the rod as two masses; `centre` is measured from the big end [m].
 
-    Without the rod's inertia there is no excess.
+    If the rod's inertia is unknown, the excess of the moment of inertia of the two masses is 0.
     """
     excess = mass * centre * (rod - centre) - inertia
     return RodMasses(

@@ -63,7 +63,7 @@ class Motion:
     def lever(self) -> Array:
         """Return the torque over axial force and crank radius.
 
-        It equals −dx/dtheta of the piston over r.
+        It equals −dx/dtheta of the piston divided by r.
         """
         return self.sin + self.cos * self.tan_phi
 
@@ -121,5 +121,5 @@ def crank_angles(strokes: Array, step: Array) -> Array:
 
 @units("1", "rad", returns="1")
 def steps_in(strokes: Array, step: Array) -> Array:
-    """Return the number of grid steps of a cycle of 2 or 4 strokes."""
+    """Return the number of grid steps in a cycle of 2 or 4 strokes."""
     return np.pi * strokes / step

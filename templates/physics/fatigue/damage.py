@@ -57,12 +57,12 @@ def _normal_that_counts(plane: CriticalPlane, credit: str) -> Array:
 
 
 def _to_points(value: Array) -> Array:
-    """Return a value for each point of the inputs, shaped to broadcast with [..., point]."""
+    """Return values of the inputs, one for each point, shaped to broadcast with [..., point]."""
     return np.asarray(value)[..., None]
 
 
 def _to_cycles(value: Array) -> Array:
-    """Return a value for each point of the inputs, shaped to broadcast with [..., point, cycle]."""
+    """Return values of the inputs, one for each point, shaped to broadcast with [..., point, cycle]."""
     return np.asarray(value)[..., None, None]
 
 
@@ -86,7 +86,7 @@ def greatest_von_mises(history: Array) -> Array:
 
 @units(None, None, "1", "Pa", returns="1")
 def compression_used(counted: CycleCounts, credit: str, support: Array, yield_strength: Array) -> Array:
-    """Return the lowest, compressive stress of each point over the yield strength [1].
+    """Return the largest compressive stress of each point relative to the yield strength [1].
 
     It is 0 if compressive mean stresses get no credit.
     """
@@ -120,7 +120,7 @@ def reversed_amplitudes(
 def mean_shares(correction: str, credit: str, mean: Array, ultimate: Array, coefficient: Array) -> Array:
     """Return the share of the bearable amplitude that mean stresses [..., point, cycle] [Pa] use up [1].
 
-    A compressive mean stress reduces nothing, and adds to the bearable amplitude only with `credit`.
+    A compressive mean stress uses up nothing; only with `credit` does it increase the bearable amplitude.
     """
     used = mean if credit == YES else np.maximum(mean, 0.0)
     strength = _to_cycles(coefficient if correction == MORROW else ultimate)
@@ -157,11 +157,11 @@ def load_uses(
     counted: CycleCounts, equivalent: Array, correction: str, credit: str, endurance: Array, ultimate: Array,
     coefficient: Array, support: Array,
 ) -> Array:  # fmt: skip
-    """Return 1/n of each point [1]; n is the safety factor on load.
+    """Return 1/n of each point [1], where n is the safety factor on load.
 
     All loads, including mean stresses, may grow n-fold until the endurance limit is reached. Goodman and
-    Morrow: 1/n = sigma_a/S_e + sigma_m/strength. Gerber: the root of n sigma_a/S_e + (n sigma_m/S_u)² = 1.
-    Findley's parameter is proportional to the loads.
+    Morrow: 1/n = sigma_a/S_e + sigma_m/strength. Gerber: n is the root of n sigma_a/S_e + (n sigma_m/S_u)² =
+    1. Findley's parameter is proportional to the loads.
     """
     limit = _to_cycles(endurance)
     if counted.high is not None:
@@ -184,7 +184,7 @@ def numbers_of_points(history: Array) -> Array:
 def governing_point(damage: Array, uses: Array) -> Array:
     """Return the number of the point with the largest damage.
 
-    Without damage, it is the point of the smallest safety factor.
+    If there is no damage, it is the point with the smallest safety factor.
     """
     first = np.where(damage.max(axis=-1, keepdims=True) > 0, damage, uses)
     known = ~np.isnan(first).any(axis=-1)

@@ -64,7 +64,7 @@ def size_factor(d: Array) -> Array:
 
 @units(None, returns="1", latex=r"1\ \text{{or}}\ 0.85\ \text{{(axial)}}")
 def loading_factor(loading: str) -> Array:
-    """Return the load factor k_c [1]: 1 in bending, 0.85 axially.
+    """Return the load factor k_c [1]: 1 in bending, 0.85 under axial load.
 
     The criterion accounts for shear, so torsion needs no factor.
     """
@@ -89,11 +89,11 @@ def strength_coefficient(ultimate: Array) -> Array:
     latex=r"\min\left(\frac{{\sigma_F'}}{{{0}}}\left(2\cdot10^{{3}}\right)^{{b}},0.9\right)",
 )
 def share_at_1000_cycles(ultimate: Array) -> Array:
-    """Return the fraction f [1] of the ultimate strength [Pa] that is the fatigue strength at 1000 cycles.
+    """Return the fatigue strength at 1000 cycles as a fraction f [1] of the ultimate strength [Pa].
 
-    σ_F' = S_u + 345 MPa, and a line through σ_F' and the specimen's limit at 10⁶ cycles (equation 6-10). It
-    is at most 0.9, which the book takes below 70 ksi (figure 6-18): below 300 MPa the line exceeds the
-    ultimate strength.
+    σ_F' = S_u + 345 MPa, and a line runs through σ_F' and the specimen's limit at 10⁶ cycles (equation 6-10).
+    The fraction is at most 0.9, the value of the book below 70 ksi (figure 6-18), because below 300 MPa the
+    line exceeds the ultimate strength.
     """
     first = strength_coefficient(ultimate)
     b = -np.log(first / specimen_limit(ultimate)) / np.log(2 * KNEE)

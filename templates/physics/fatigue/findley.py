@@ -138,7 +138,7 @@ def _in_plane(normals: Array) -> tuple[Array, Array]:
 
 
 def _acting(tensors: Array, normals: Array) -> tuple[Array, Array]:
-    """Return the shear stress (complex, in the plane) and the normal stress on planes.
+    """Return the shear stress (as a complex number in the plane) and the normal stress on planes.
 
     Both are [history, plane, angle].
     """
@@ -165,7 +165,7 @@ def _parameters(tensors: Array, normals: Array, k: float, credit: bool) -> Array
 
 
 def _longest_way(shear: Array, amplitude: Array) -> Array:
-    """Return the shear [history, angle] along the line of its largest range, scaled to the amplitude."""
+    """Return the shear [history, angle] along the direction of its largest range, scaled to the amplitude."""
     lines = np.exp(-1j * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS)
     along = (shear[:, None, :] * lines[:, None]).real
     ranges = along.max(axis=-1) - along.min(axis=-1)

@@ -30,7 +30,7 @@ class Cycles:
 
 
 def from_the_highest(history: Array) -> Array:
-    """Return one period of a periodic history from its highest point to that point again, in its unit."""
+    """Return one period of a periodic history, from its highest point to that point's next occurrence."""
     turned = np.roll(history, -int(np.argmax(history)))
     return np.append(turned, turned[0])
 

@@ -56,7 +56,7 @@ def _radii(paths: Complex) -> Array:
 
 
 def _far(paths: Complex, centres: Complex) -> Array:
-    """Return the squares of the distances from the centres."""
+    """Return the squared distances from the centres."""
     away = paths - centres[:, None]
     return np.asarray(away.real**2 + away.imag**2)
 
@@ -87,7 +87,7 @@ def _about_four(points: Complex) -> tuple[Complex, Array, Complex]:
 
 
 def _circumscribed(a: Complex, b: Complex, c: Complex) -> tuple[Complex, Array]:
-    """Return the circles through three points [n]; infinite if the points are collinear."""
+    """Return the circle through each set of three points [n]; infinite if the points are collinear."""
     p, q = b - a, c - a
     twice = 2 * (p.conj() * q).imag
     flat = twice == 0

@@ -43,7 +43,7 @@ def is_given(load: Array) -> bool:
 
 @units(None, None, returns="1")
 def go_together(loads: Sequence[Array], stresses: Sequence[Rows]) -> Truth:
-    """Return whether every load has its stresses, and every table of stresses its load."""
+    """Return whether every load has its stresses and every table of stresses has its load."""
     return all(is_given(load) == bool(rows) for load, rows in zip(loads, stresses, strict=True))
 
 

@@ -46,7 +46,7 @@ class BandedMatrix:
         return IncrementalSolver(self).solve(inside, b)
 
     def write(self, bands: Array, film: Mask, start: int) -> None:
-        """Write the bands from an unknown on; outside the film they are those of the unit matrix.
+        """Write the bands, starting at an unknown; outside the film they are those of the unit matrix.
 
         Parameters
         ----------

@@ -38,7 +38,7 @@ class Coefficients:
 
 
 def plain_coefficients(eps: float, ratio: float, around: int = 128, across: int = 16) -> Coefficients:
-    """Return stiffness and damping of the film of `reynolds.static_film`; its supply line is fixed in space.
+    """Return the stiffness and damping of the film of `reynolds.static_film`; its supply line stays in place.
 
     Parameters
     ----------
@@ -64,7 +64,8 @@ def plain_coefficients(eps: float, ratio: float, around: int = 128, across: int 
 def linear_forces(eps: float, ratio: float, mesh: Mesh, film: Rupture) -> Array:
     """Return So along and ahead of the line of centres, and their derivatives, (2, 5) [-].
 
-    Columns: the force itself, by displacement along and ahead, by velocity along and ahead.
+    The columns are the force itself, its derivatives by displacement along and ahead, and by velocity along
+    and ahead.
     """
     middle = midpoints(mesh.phi)
     changes = [(-np.cos(mesh.phi), -np.cos(middle)), (-np.sin(mesh.phi), -np.sin(middle))]

@@ -19,7 +19,7 @@ from templates.physics.films.film_mesh import Mesh
 
 
 def dual_widths(nodes: Array) -> Array:
-    """Return the lengths of the cells around the nodes (n + 1,), half cells at the ends."""
+    """Return the lengths of the cells around the nodes (n + 1,), with half cells at the ends."""
     half = np.diff(nodes) / 2
     return np.concatenate([half, [0.0]]) + np.concatenate([[0.0], half])
 
@@ -51,7 +51,7 @@ class Equations:
 
     @cached_property
     def brought(self) -> Array:
-        """Return the flow brought to the nodes by rotation and squeeze, (n + 1, m + 1)."""
+        """Return the flow that rotation and squeeze bring to the nodes, (n + 1, m + 1)."""
         return np.asarray(self.source[:, None] * dual_widths(self.zeta))
 
     def residual(self, P: Array) -> Array:
@@ -98,7 +98,7 @@ def film_equations(mesh: Mesh, ratio: float, H: Array, H_mid: Array, source: Arr
     H_mid
         (n,) gap midway between the nodes [-].
     source
-        (n + 1,) flow that motion brings to the nodes, see `rotation` and `squeeze`.
+        (n + 1,) flow that motion brings to the nodes; see `rotation` and `squeeze`.
     """
     return Equations(
         around=H_mid**3 / np.diff(mesh.phi),
@@ -111,7 +111,7 @@ def film_equations(mesh: Mesh, ratio: float, H: Array, H_mid: Array, source: Arr
 def perturbed_equations(
     mesh: Mesh, ratio: float, H: Array, H_mid: Array, change: Array, change_mid: Array
 ) -> Equations:
-    """Return the derivative of `film_equations` for a change of the gap, in the direction of that change."""
+    """Return the derivative of `film_equations` in the direction of a change of the gap."""
     return Equations(
         around=3 * H_mid**2 * change_mid / np.diff(mesh.phi),
         across=3 * H**2 * change * dual_widths(mesh.phi) / ratio**2,
@@ -135,5 +135,5 @@ def squeeze(mesh: Mesh, H_rate: Array) -> Array:
 
 
 def midpoints(nodes: Array) -> Array:
-    """Return the positions midway between the nodes, in their unit."""
+    """Return the positions midway between the nodes, in the unit of the nodes."""
     return (nodes[:-1] + nodes[1:]) / 2

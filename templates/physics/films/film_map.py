@@ -123,7 +123,7 @@ def mapped_coefficients(eps: Array, ratio: Array) -> tuple[Array, Array]:
 
 
 def map_error(eps: Array, ratio: Array) -> Array:
-    """Return the largest error [-] measured near a point between the map and new, finer solutions.
+    """Return the largest measured difference [-] near a point between the map and new, finer solutions.
 
     Returns
     -------
@@ -141,7 +141,7 @@ def map_error(eps: Array, ratio: Array) -> Array:
 
 
 def encode(eps: float, ratio: float, film: Film) -> Array:
-    """Return the smooth interpolated values, (8,), of a film at eps > 0."""
+    """Return the values, (8,), by which the map interpolates a film at eps > 0 smoothly."""
     s = np.sqrt((1 - eps) * (1 + eps))
     peak, rupture = np.tan(sommerfeld_angle(np.array([film.peak, film.rupture]), eps) / 2)
     shear = film.friction_streamers - (film.friction - film.friction_bearing) / 2

@@ -97,7 +97,7 @@ def rupture_angle(field: Field) -> Array:
 
 
 def _peak(phi: Array, P: Array) -> tuple[float, float]:
-    """Return position and value of the largest pressure, from a parabola through three nodes."""
+    """Return the position and value of the largest pressure, computed by a parabola through three nodes."""
     k = min(max(int(P.argmax()), 1), P.size - 2)
     before, after = phi[k - 1] - phi[k], phi[k + 1] - phi[k]
     slope_before, slope_after = (P[k - 1] - P[k]) / before, (P[k + 1] - P[k]) / after
@@ -120,7 +120,10 @@ def _flows(field: Field) -> tuple[float, float, float]:
 
 
 def _streamer_shear(field: Field, end: Array) -> float:
-    """Return the shear of the full film up to rupture and of streamers of width H_rupture/H beyond it [-]."""
+    """Return the shear of the full film up to rupture and of streamers beyond it [-].
+
+    The streamers fill the fraction H_rupture/H of the width.
+    """
     eps, gamma = field.eps, sommerfeld_angle(end, field.eps)
     s = np.sqrt((1 - eps) * (1 + eps))
     H_end = s**2 / (1 + eps * np.cos(gamma))

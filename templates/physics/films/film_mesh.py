@@ -1,7 +1,7 @@
 """Meshes for the film of a journal bearing: graded to the thin film, to the ends, and for a short bearing.
 
 phi is the angle from the narrowest gap, positive in the sense of rotation; H = 1 − eps cos(phi).
-zeta = 2z/B runs from the middle of the bearing (0) to its end (1): the film is symmetric.
+zeta = 2z/B runs from the middle of the bearing (0) to its end (1), because the film is symmetric.
 """
 
 from collections.abc import Callable
@@ -31,7 +31,7 @@ class Mesh:
     """(m + 1,) the same over zeta, for both halves together."""
 
     def coarser(self) -> "Mesh":
-        """Return the mesh of every second node; its quadrature weights must not be used."""
+        """Return the mesh of every second node; its quadrature weights are invalid."""
         return Mesh(self.phi[::2], self.zeta[::2], self.weight_phi[::2], self.weight_zeta[::2])
 
 
@@ -114,7 +114,8 @@ def _graded_around(eps: float, ratio: float, n: int, end: float) -> tuple[Array,
     """Return nodes equally spaced in Sommerfeld's angle plus asinh(phi/w), and dphi of each interval.
 
     The first term resolves the thin film, the second every decade from it to the wide gap, where the side
-    flow arises. w is the width of the thin film or, if smaller, that of the rupture zone of a short bearing.
+    flow arises. w is the width of the thin film, or that of the rupture zone of a short bearing if it is
+    smaller.
     """
     width = min(np.sqrt((1 - eps) / (1 + eps)), 3 * ratio)
 
@@ -146,9 +147,9 @@ def _inverse(f: Callable[[Array], Array], slope: Callable[[Array], Array], y: Ar
 
 
 def graded_across(layer: float, m: int) -> tuple[Array, Array]:
-    """Return axial nodes zeta [-] graded to an edge layer of given width, and dzeta of each interval.
+    """Return axial nodes zeta [-], graded to an edge layer of given width, and dzeta of each interval.
 
-    The layer is as wide as the thin film is long, relative to half the bearing's width.
+    The width of the layer is the length of the thin film, relative to half the width of the bearing.
     """
     t = 1 - np.linspace(0, 1, m + 1)
     if layer >= 1:

@@ -68,7 +68,7 @@ class Bore:
         return np.asarray(joints, float) if self.is_lobed else np.zeros(0)
 
     def arcs(self) -> tuple[Array, Array, Array]:
-        """Return begin and end of each lobe, and the direction of its least gap, (lobes,) each [rad]."""
+        """Return the beginning, the end, and the direction of the least gap of each lobe, (lobes,) [rad]."""
         arc = 2 * np.pi / self.lobes
         begin = np.asarray(self.angle + arc * (np.arange(self.lobes) - 0.5), float)
         return begin, begin + arc, begin + arc * self.offset
@@ -76,7 +76,7 @@ class Bore:
     def around(self, phi: Array, side: int = 1) -> Array:
         """Return the contribution of lobes to the gap of a centred journal, at angles from the load [-].
 
-        Where lobes meet, a side of 1 selects the lobe ahead, −1 the lobe behind.
+        Where lobes meet, a side of 1 selects the lobe ahead, and −1 the lobe behind.
         """
         if not self.is_lobed:
             return np.zeros_like(phi)
@@ -125,7 +125,7 @@ def directions(phi: Array) -> Array:
 def gap(bore: Bore, lie: Lie, phi: Array, zeta: Array, side: int = 1) -> Array:
     """Return the film thickness over the radial clearance at all angles and places, (angles, places).
 
-    Where lobes meet, `Bore.around` explains the side that is used.
+    `Bore.around` explains which lobe counts where lobes meet.
     """
     x, y = directions(phi)
     e, t = lie.e, lie.tilt

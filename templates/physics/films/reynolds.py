@@ -1,8 +1,9 @@
 """Static plain journal bearing: the Reynolds equation in two dimensions with free film rupture.
 
-Isothermal, incompressible, rigid and aligned, laminar; full circle without grooves. Boundary condition: P = 0
-at the ends and along a supply line at the widest gap; the film ruptures where P = dP/dn = 0 (Swift, Stieber).
-A film without a supply line, periodic around the circle, would have different attitudes at small eps.
+Assumptions: isothermal, incompressible, laminar flow; a rigid, aligned bearing; a full circle without
+grooves. Boundary condition: P = 0 at the ends and along a supply line at the widest gap; the film ruptures
+where P = dP/dn = 0 (Swift, Stieber). A film without a supply line, periodic around the circle, would have
+different attitudes at small eps.
 
 Everything is dimensionless: P = p psi²/(eta omega_h), So = F psi²/(B D eta omega_h). Second-order finite
 volumes: with 128 × 16 intervals the error of So is about 0.05 % up to eps 0.999 (0.1 % at 1 − 1e-6);
@@ -66,12 +67,12 @@ def static_film(eps: float, ratio: float, around: int = 128, across: int = 16) -
 
 
 def extrapolated_film(eps: float, ratio: float, around: int = 128, across: int = 16) -> tuple[Film, Film]:
-    """Return the film by Richardson extrapolation from the given mesh and one with twice as many intervals.
+    """Return the film by Richardson extrapolation from the given mesh and one twice as fine.
 
     Returns
     -------
-    The film extrapolated with order 2, and the difference between it and the finer solution:
-    an estimate of that solution's error.
+    The film extrapolated with order 2, and its difference from the finer solution: an estimate of that
+    solution's error.
     """
     if eps == 0:
         coarse, fine = (static_film(eps, ratio, k * around, k * across) for k in (1, 2))

@@ -1,6 +1,6 @@
 """Closed forms of the short journal bearing: axial pressure flow only, film over the converging half.
 
-For bearings with B/D up to about 1/4. Compared with the converged Reynolds solution at B/D 0.05, the load is
+They are valid for B/D up to about 1/4. Compared with the converged Reynolds solution at B/D 0.05, the load is
 too high by 0.1–0.8 % up to eps 0.8, by 1.8 % at 0.9 and by 18 % at 0.99. Boundary condition: P = 0 at the
 ends, at the widest gap and over the whole diverging half (Gümbel).
 

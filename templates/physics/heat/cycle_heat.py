@@ -11,6 +11,7 @@ over circumference and cycle.
 
 P rises with the viscosity, and the film's temperature with P, so there is one root in ln(eta). The viscosity
 at the supply temperature is divided by four repeatedly until it is too low: the last step brackets the root.
+If there is no orbit at an end of that step, the step is halved.
 
 References
 ----------
@@ -49,6 +50,8 @@ LEVELS = ("mobility_short", "mobility", "mobility_grooved")
 _STEPS = 6
 _STEP = float(np.log(4))
 """Largest number and size (in ln) of the steps by which the search lowers the supply viscosity."""
+_HALVINGS = 10
+"""Largest number of halvings of a step at one end of which there is no orbit."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,7 +78,7 @@ class CycleOil(ViscousOil):
         return self.viscosity(T) * (1 - self.taken(T, rate))
 
     def taken(self, T: Array, rate: Array) -> Array:
-        """Return the share [-] of the viscosity that shear takes at a temperature [K] and a rate [1/s]."""
+        """Return the share [-] by which shear reduces the viscosity at a temperature [K] and a rate [1/s]."""
         one, nothing = np.asarray(1.0), np.asarray(0.0)
         still, hot = self.viscosity(T), self.viscosity(np.asarray(HTHS_TEMPERATURE))
         at_150 = critical_rate_of_HTHS(self.left, one, nothing, self.exponent)
@@ -99,7 +102,7 @@ class CycleBearing:
     """Radial clearance [m]."""
 
     def fed(self, eta: Array) -> FedDuty:
-        """Return the duty at a viscosity [Pa s]."""
+        """Return the duty with its oil supply at a viscosity [Pa s]."""
         P = self.pressure * (2 * self.clearance / self.feeding.D) ** 2 / (eta * self.duty.Omega)
         return fed_duty(self.level, replace(self.duty, scale=self.duty.scale / eta), self.feeding, P)
 
@@ -173,7 +176,7 @@ def cycle_heat(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
             return np.asarray(np.log(oil.sheared(T, film.rate)) - x)
 
     def at_some(x: Array, number: Array) -> Array:
-        """Return the same object for the points with these indices."""
+        """Return the same object for a subset of the points, given by their indices."""
         everywhere = np.full(top.size, np.nan)
         everywhere[number.astype(np.int64)] = x
         return lack(everywhere.reshape(shape)).ravel()[number.astype(np.int64)]
@@ -200,25 +203,26 @@ def cycle_heat(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
 
 
 def _bracket(lack: Callable[[Array], Array], top: Array, load: Array) -> tuple[Array, Array]:
-    """Return the step below the supply viscosity, in ln, that brackets the root; NaN if none does.
+    """Return two values of ln(viscosity) with the root between them; NaN if there are none.
 
-    If the load is so light that no orbit is found at the supply viscosity, there may be one at a lower
-    viscosity.
+    Both are the supply viscosity `top` if it is too low already. Above the root the load may be so light that
+    no orbit is found, below it so heavy that none is: then the interval is halved until both ends have one.
     """
-    low, high = np.full(top.shape, np.nan), np.full(top.shape, np.nan)
-    at, above = top, top
-    for _ in range(_STEPS + 1):
+    low, high, at = np.full(top.shape, np.nan), np.full(top.shape, np.nan), top
+    low_known, high_known, found = (np.zeros(top.shape, bool) for _ in range(3))
+    for _ in range(_STEPS + _HALVINGS + 1):
         missing = lack(at)
         with np.errstate(invalid="ignore"):
-            found = missing >= 0
-            light = np.isnan(missing) & (load < np.exp(at))
-            low, high = np.where(found, at, low), np.where(found, above, high)
-            above = np.where(light, np.nan, at)
-            at = np.where(light | (missing < 0), at - _STEP, np.nan)
+            below = (missing >= 0) | (np.isnan(missing) & (load >= np.exp(at)))
+            above = (missing < 0) | (np.isnan(missing) & (load < np.exp(at)))
+        low, low_known = np.where(below, at, low), np.where(below, missing >= 0, low_known)
+        high, high_known = np.where(above, at, high), np.where(above, missing < 0, high_known)
+        found = low_known & (high_known | (low == top))
+        at = np.where(np.isnan(low), at - _STEP, (low + high) / 2)
+        at = np.where(found | (at < top - (_STEPS + 0.5) * _STEP), np.nan, at)
         if np.isnan(at).all():
             break
-    high = np.where(np.isnan(high) & (low < top), low + _STEP, high)
-    return low, np.where(low == top, top, high)
+    return np.where(found, low, np.nan), np.where(found, np.where(low == top, top, high), np.nan)
 
 
 def heaviest(duty: Duty) -> Array:
@@ -234,7 +238,7 @@ def temperature(oil: CycleOil, film: FilmState) -> Array:
 
 
 def _where_known(eta: Array, value: Array) -> Array:
-    """Return the value where a viscosity was found, else NaN."""
+    """Return the value where a viscosity was found, otherwise NaN."""
     return np.asarray(np.where(np.isnan(eta), np.nan, value))[()]
 
 
@@ -258,10 +262,10 @@ def rate_of(heat: CycleHeat, eta: Array) -> Array:
 
 @units(None, "Pa*s", "Pa*s", returns="1", latex=r"1-\frac{{{1}}}{{{2}}}")
 def shear_loss_of(heat: CycleHeat, eta: Array, still: Array) -> Array:
-    """Return the share of the viscosity that shear takes [-]; NaN where the viscosity is.
+    """Return the share by which shear reduces the viscosity [-]; NaN where the viscosity is NaN.
 
-    By Cross's law, so that it is never below 0: 1 less the ratio of both viscosities [Pa s] is it but for
-    the residual of the balance.
+    It follows from Cross's law and is never below 0. Except for the residual of the balance it equals 1 minus
+    the ratio of the two viscosities [Pa s].
     """
     return _where_known(eta, heat.taken)
 
@@ -286,7 +290,7 @@ def feed_flow_of(heat: CycleHeat, eta: Array) -> Array:
 
 @units("m**3/s", "m**3/s", returns="m**3/s", latex="{0}+{1}")
 def all_flow(side: Array, feed: Array) -> Array:
-    """Return the flow out of the ends [m³/s]: side flow plus feed flow, with NaN as no feed flow."""
+    """Return the flow out of the ends [m³/s]: side flow plus feed flow; a feed flow of NaN counts as 0."""
     return side + np.nan_to_num(feed)
 
 

@@ -34,7 +34,10 @@ FARTHEST = float(np.log(4))
 
 @on_paper("solved numerically by secants of the viscosity in the heat balance over the cycle")
 def heat_of_cycle(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
-    """Return the viscosity that satisfies the heat balance, at any level; level supplied takes one point."""
+    """Return the viscosity that satisfies the heat balance, at any level.
+
+    Level `supplied` takes a single point.
+    """
     if bearing.level != "supplied":
         return cycle_heat(bearing, oil)
     cheap = "mobility_grooved" if np.all(bearing.feeding.grooved) else "mobility"

@@ -58,7 +58,7 @@ class OperatingPoint(ViscousOil):
     """Heat transfer coefficient times area, else NaN [W/K]."""
 
     def power_and_flow(self, T: Array) -> tuple[Array, Array]:
-        """Return power loss [W] and side flow [m³/s] at T [K]; beyond the film map, those at its limit."""
+        """Return power loss [W] and side flow [m³/s] at T [K]; outside the map, the values at its limit."""
         eta, ratio = self.viscosity(T), self.W / self.D
         scale = self.W * self.D * eta * self.omega_m / self.psi**2
         inside = (ratio >= NARROWEST) & (ratio <= WIDEST)
@@ -70,14 +70,14 @@ class OperatingPoint(ViscousOil):
         return power, film.side_flow * (self.D / 2) ** 3 * self.psi * self.omega_m
 
     def coldest(self) -> Array:
-        """Return the lower of supply and ambient temperature, as far as they are given [K]."""
+        """Return the lower of the supply and the ambient temperature; if only one is given, that one [K]."""
         return np.fmin(self.T_supply, np.where(np.isfinite(self.kA), self.T_ambient, np.nan))
 
     def heat(self, rise: Array) -> tuple[Array, Array, Array]:
         """Return power, heat to oil and heat to air [W] at a rise above the coldest surrounding [K].
 
-        Differences are formed before the rise is added, because a small rise would be lost in the rounding of
-        T.
+        Differences are formed before the rise is added, because a small rise would be lost in the rounding
+        error of T.
         """
         coldest = self.coldest()
         power, flow = self.power_and_flow(coldest + rise)
@@ -91,7 +91,7 @@ class OperatingPoint(ViscousOil):
         return 1 - (by_oil + by_air) / power
 
     def residual(self, rise: Array) -> Array:
-        """Return the heat imbalance over the largest of power, heat to oil and heat to air [-]."""
+        """Return the heat imbalance relative to the largest of power, heat to oil and heat to air [-]."""
         power, by_oil, by_air = self.heat(rise)
         largest = np.maximum(power, np.maximum(np.abs(by_oil), np.abs(by_air)))
         return (power - by_oil - by_air) / largest
@@ -111,7 +111,7 @@ class HeatBalance:
 
 @on_paper("solved numerically by bracketing the film temperature in the heat balance of ISO 7902-1")
 def heat_balance(running: OperatingPoint) -> HeatBalance:
-    """Return the film temperature of every point that has oil supply or air for cooling."""
+    """Return the film temperature of every point that has an oil supply, or air for cooling."""
     names = [field.name for field in fields(running)]
     parts = np.broadcast_arrays(*(np.asarray(getattr(running, name), dtype=float) for name in names))
     everything = OperatingPoint(**dict(zip(names, parts, strict=True)))
@@ -124,14 +124,14 @@ def heat_balance(running: OperatingPoint) -> HeatBalance:
 
 
 def asked_for(T_supply: Array, T_ambient: Array, kA: Array) -> Mask:
-    """Return whether a supply temperature, or air temperature and heat transfer, is given."""
+    """Return whether a supply temperature is given, or both an air temperature and a heat transfer."""
     return np.asarray(np.isfinite(T_supply) | (np.isfinite(T_ambient) & np.isfinite(kA)))
 
 
 def _balance(point: OperatingPoint) -> tuple[Array, Array]:
     """Return the temperature and residual of a one-dimensional array of points.
 
-    They are infinite and NaN where there is no balance, and both NaN where data are missing.
+    If there is no balance, they are infinite and NaN; if data are missing, both are NaN.
     """
     coldest = point.coldest()
     most = HOTTEST - coldest

@@ -11,9 +11,9 @@ from templates.physics.journals.heat_balance import HeatBalance, asked_for
 
 @units("K", None, returns="K", latex=r"{0}\ \text{{or that of the heat balance}}")
 def film_temperature(T_mean: Array, balance: HeatBalance) -> Array:
-    """Return the temperature from the heat balance if there is one, else the mean temperature [K].
+    """Return the temperature from the heat balance if there is one, otherwise the mean temperature [K].
 
-    The result is NaN if there is neither.
+    The result is NaN if neither is known.
     """
     return np.where(np.isnan(balance.T), T_mean, balance.T)[()]
 
@@ -37,7 +37,7 @@ def or_reference(T: Array, T_ref: Array) -> Array:
 def viscosity_known(
     eta: Array, T_in: Array, T_out: Array, T_supply: Array, T_ambient: Array, kA: Array
 ) -> Mask:
-    """Return whether the viscosity is given (not NaN) or follows from some temperature."""
+    """Return whether the viscosity is given (not NaN) or follows from a temperature."""
     means = np.isfinite(T_in) & np.isfinite(T_out)
     return np.asarray(np.isfinite(eta) | means | asked_for(T_supply, T_ambient, kA))[()]
 

@@ -57,7 +57,7 @@ def eccentricity_of_load(So: Array, ratio: Array) -> Array:
 @on_paper("solved numerically by splines in a map of solutions of the Reynolds equation")
 @units("1", "1", returns="1")
 def friction_over_Petrov(eps: Array, ratio: Array) -> Array:
-    """Return the friction on the loaded journal over Petrov's, 1 or more; NaN where eps is NaN [-].
+    """Return the friction on the loaded journal relative to Petrov's, 1 or more; NaN where eps is NaN [-].
 
     Parameters
     ----------

@@ -40,9 +40,9 @@ def lubrication_regime(parameter: Array) -> Any:
 def regime_of_contact(share: Array) -> Any:
     """Return the regime from the fraction of the load carried by contact [1]; empty where it is NaN.
 
-    The regime is boundary if the contact carries more than the film, full_film up to 0.0001, mixed in
-    between. The film parameter gives the same regime only under light load: at high pressure the film carries
-    nearly all the load even at a parameter below 1.
+    The regime is boundary if the contact carries more than the film, full_film if it carries at most 0.0001
+    of the load, and mixed in between. The film parameter gives the same regime only under light load: at high
+    pressure the film carries nearly all the load even at a parameter below 1.
     """
     share = np.asarray(share)
     words = np.select([share > BOUNDARY, share > FREE, share >= 0], ["boundary", "mixed", "full_film"], "")

@@ -147,7 +147,7 @@ class MixedJournal:
     """Index of the bearing of each point (...); −1 where data are missing."""
 
     def shares(self, eps: Array, speed: Array, i: Indices) -> tuple[Array, ...]:
-        """Return the forces along and across the line of centres, and their components, for bearings i."""
+        """Return the forces along and across the line of centres, and their parts, for bearings i."""
         bearings = self.bearing
         So, attitude = self.films.at(np.minimum(eps, ECCENTRICITY_LIMIT), i)
         along, around = contact_integrals(eps, bearings.roughness[i])
@@ -157,7 +157,7 @@ class MixedJournal:
         return film * np.cos(attitude) + contact, across, film, contact, scale * around, So, attitude
 
     def excess(self, deep: Array, speed: Array, number: Array) -> Array:
-        """Return the excess of force over load at an eccentricity of 1 − exp(−deep), −1 … 1 [-]."""
+        """Return the excess of force over load, −1 … 1, at the eccentricity 1 − exp(−deep) [-]."""
         i = number.astype(np.int64)
         along, across, *_ = self.shares(-np.expm1(-deep), speed, i)
         force = np.hypot(along, across)
@@ -221,7 +221,7 @@ def mixed_films(journal: MixedJournal, omega: Array) -> MixedFilm:
 
 
 def mixed_film(journal: MixedJournal, omega: Array) -> MixedFilm:
-    """Return the equilibrium that carries the load at one speed for each point, arrays (...).
+    """Return the equilibrium that carries the load at one speed for each point; arrays have shape (...).
 
     See `mixed_films`.
     """

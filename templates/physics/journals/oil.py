@@ -107,7 +107,7 @@ def _above_pole(T: Array, c: Array) -> Array:
 
 @units(None, "Pa*s", "Pa*s", returns="Pa*s", latex=r"{1}\ \text{{(Walther) or}}\ {2}\ \text{{(Vogel)}}")
 def by_law(law: str, of_walther: Array | float, of_vogel: Array) -> Array:
-    """Return the value [Pa s] for the given law, `walther` or `vogel`."""
+    """Return the value [Pa s] that belongs to the given law, `walther` or `vogel`."""
     return of_vogel if law == "vogel" else np.asarray(of_walther)[()]
 
 
@@ -116,7 +116,8 @@ def viscosity_at(
 ) -> Array:
     """Return the dynamic viscosity [Pa s] at T [K].
 
-    It is the given one, else that of Vogel's law if its factor is given, else that of Walther's law.
+    It is the given viscosity, if there is one; otherwise that of Vogel's law if its factor is given;
+    otherwise that of Walther's law.
 
     Parameters
     ----------

@@ -41,7 +41,7 @@ def grades() -> tuple[str, ...]:
 
 
 def basis(grade: str) -> str:
-    """Return the source of a grade's viscosities."""
+    """Return the source from which the viscosities of a grade are taken."""
     return next(row[4] for row in _rows() if row[0] == grade)
 
 

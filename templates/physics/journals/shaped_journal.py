@@ -56,7 +56,7 @@ class Shape:
     """The same displacement, ahead of the load [-]."""
 
     def numbers(self) -> list[Array]:
-        """Return all values except the first two."""
+        """Return all fields as arrays, except the first two."""
         return [np.asarray(getattr(self, field.name), float) for field in fields(self)[2:]]
 
     def at(self, preload: float, angle: float, offset: float, mouth: float, mouth_length: float) -> Bore:
@@ -116,9 +116,9 @@ class StaticFilm:
 
 @units(None, returns="1")
 def middle_of_least_gap(bore: str) -> Array:
-    """Return the fraction of a lobe's arc before its least gap [-].
+    """Return the fraction of a lobe's arc that lies before its least gap [-].
 
-    It is 1 if halves are offset, else 1/2.
+    It is 1 if halves are offset, otherwise 1/2.
     """
     return np.asarray(1.0 if bore == "offset" else 0.5)
 
@@ -230,7 +230,7 @@ def measured(balanced: Balance, bore: Bore, tilt: Array, share: float) -> dict[s
 
     The order is 2, or 1 for results that depend on a re-formation front or on the pressure at the ends.
     Outside the asymptotic range the results are those of the finest mesh. `share` is the force over the load:
-    below 1 the journal lies closer to the middle in proportion.
+    if it is below 1, the journal lies closer to the middle in proportion.
     """
     coarse, fine, at_fine = balanced.coarse.film, balanced.fine.film, balanced.fine.lie
     third = 1 / 3 if balanced.is_asymptotic else 0.0
@@ -288,10 +288,10 @@ def linear_of(
 
 
 def _turning(K: Array, film: StaticFilm, So: Array) -> Array:
-    """Return the stiffness with the column across the line of centres for a film that rotates as a whole.
+    """Return the stiffness with the column for displacements across the line of centres changed.
 
-    A displacement across by eps d(gamma) rotates the force by d(gamma), so it changes by So/eps at right
-    angles.
+    The film rotates as a whole: a displacement across by eps d(gamma) rotates the force by d(gamma), so the
+    force changes by So/eps at right angles.
     """
     cos, sin = np.cos(film.attitude), np.sin(film.attitude)
     turn = np.stack([np.stack([cos, -sin], axis=-1), np.stack([sin, cos], axis=-1)], axis=-2)

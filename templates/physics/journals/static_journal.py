@@ -73,7 +73,7 @@ def is_fed(pressure: Array, grooves: tuple[tuple[float, float], ...]) -> bool:
 def ladder(
     levels: tuple[str, ...], pressure: Array, grooves: tuple[tuple[float, float], ...]
 ) -> tuple[str, ...]:
-    """Return the levels that can model the oil supply: all but FED, or only FED."""
+    """Return the levels that can model the oil supply: all except FED, or only FED."""
     return (FED,) if is_fed(pressure, grooves) else tuple(level for level in levels if level != FED)
 
 
@@ -177,7 +177,7 @@ def fitted_film(So: Array, ratio: Array, _: list[Feed]) -> JournalFilm:
 
 
 def interpolated_film(So: Array, ratio: Array, _: list[Feed]) -> JournalFilm:
-    """Return the map's film."""
+    """Return the film that the map gives."""
     eps = mapped_eccentricity(So, ratio)
     return replace(_mapped(np.where(np.isnan(eps), 0.0, eps), ratio), eps=eps, So=So)
 
@@ -196,7 +196,7 @@ def solved_film(So: Array, ratio: Array, _: list[Feed]) -> JournalFilm:
 
 
 def _solved(eps: float, ratio: float) -> list[float]:
-    """Return the fields of `JournalFilm` from full solutions; an eps of NaN gives NaN."""
+    """Return the fields of `JournalFilm` from full solutions; where eps is NaN, they are NaN."""
     if np.isnan(eps):
         return [np.nan] * 7
     film = extrapolated_film(eps, ratio)[0]
@@ -207,7 +207,7 @@ def _solved(eps: float, ratio: float) -> list[float]:
 def conserving_film(So: Array, ratio: Array, feeds: list[Feed]) -> JournalFilm:
     """Return the film with cavities, point by point; in cavities only the oil is sheared.
 
-    The results are corrected to the load as the map's would change.
+    The results are corrected to the load in the same proportion as those of the map.
     """
     films = [fed_film(*point) for point in zip(So, ratio, feeds, strict=True)]
     film = {
@@ -221,7 +221,7 @@ def conserving_film(So: Array, ratio: Array, feeds: list[Feed]) -> JournalFilm:
 
 
 def _moved(So: Array, ratio: Array, near: Array) -> JournalFilm:
-    """Return films near the wanted load, (N, 7), corrected to it as the map's film would change."""
+    """Return films near the wanted load, (N, 7), corrected to it in the same proportion as the map's film."""
     film = JournalFilm(*near.reshape(-1, 7).T)
     valid = np.isfinite(film.eps)
     at = np.where(valid, film.eps, 0.5)

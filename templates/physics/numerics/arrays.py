@@ -10,7 +10,7 @@ ECCENTRICITY_LIMIT = 1 - 1e-7
 
 
 def require(accepted: Mask, complaint: str) -> None:
-    """Raise an error unless every element is accepted; a NaN never is.
+    """Raise an error unless every element is accepted; NaN is never accepted.
 
     Raises
     ------
@@ -22,7 +22,9 @@ def require(accepted: Mask, complaint: str) -> None:
 
 
 def require_film(eps: Array, ratio: Array) -> None:
-    """Raise an error for an eccentricity outside [0, 1 − 1e-7] or a width ratio not positive and finite.
+    """Raise an error for an eccentricity or a width ratio outside its range.
+
+    The eccentricity must be in [0, 1 − 1e-7], the width ratio positive and finite.
 
     Raises
     ------

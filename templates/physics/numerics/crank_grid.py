@@ -60,14 +60,14 @@ class CrankGrid:
         return np.take_along_axis(values, order, axis=-1)
 
     def swing(self, values: Array) -> Array:
-        """Return values, sorted by angle, minus their trapezoidal mean over the cycle, (…, K)."""
+        """Return values, sorted by angle, minus their mean over the cycle by the trapezoidal rule, (…, K)."""
         ascending = self.sorted(values)
         return ascending - self._parts(ascending).sum(axis=-1, keepdims=True) / self.cycle
 
     def running(self, values: Array) -> Array:
-        """Return the integral from the first angle of values minus their mean, (…, K), in grid order.
+        """Return the integral of values minus their mean from the first angle on, (…, K), in grid order.
 
-        The mean is computed by the same rule on the same grid, so the integral closes over the cycle.
+        The mean is computed by the same rule on the same grid, so that the integral is 0 over a whole cycle.
         """
         parts = self._parts(self.swing(values))
         sums = np.concatenate([np.zeros_like(parts[..., :1]), np.cumsum(parts, axis=-1)[..., :-1]], axis=-1)

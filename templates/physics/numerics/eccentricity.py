@@ -17,7 +17,7 @@ _LOWEST = 1e-20
 
 
 def eccentricity(load: Callable[..., Array], So: Array, *parameters: Array) -> Array:
-    """Return eps with load(eps, *parameters) = So [-].
+    """Return eps for which load(eps, *parameters) = So [-].
 
     Parameters
     ----------

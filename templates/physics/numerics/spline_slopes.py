@@ -40,7 +40,7 @@ def surfaces_with_slopes(
 
     Returns
     -------
-    (3, functions, N): values, derivatives by x, derivatives by y.
+    (3, functions, N): values, derivatives with respect to x, and to y.
     """
     flat = coefficients.reshape(-1, coefficients.shape[-1])
     values = np.empty((3, flat.shape[1], x.size))

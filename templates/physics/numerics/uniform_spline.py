@@ -47,7 +47,7 @@ class Axis:
 
 
 def spline_coefficients(values: Array) -> Array:
-    """Return the B-spline coefficients, two more than values along the first axis, that interpolate."""
+    """Return the coefficients of the B-spline that interpolates values; the first axis has two more."""
     n = len(values)
     system = np.zeros((n + 2, n + 2))
     for k in range(n):

@@ -1,7 +1,8 @@
-"""The duty of a journal bearing over a cycle and the results of its film, in the frame of the load.
+"""Data types for the duty of a journal bearing over a cycle, and for the results of its film.
 
-A positive speed turns x to y. Pressure, loss and flow are dimensionless: P = p psi²/(eta Omega), psi the
-diametral clearance over the diameter, Omega the speed of the crank.
+Vectors are given in the frame of the load. A positive speed turns x to y. Pressure, loss and flow are
+dimensionless: P = p psi²/(eta Omega), where psi is the diametral clearance divided by the diameter, and Omega
+is the speed of the crank.
 """
 
 from dataclasses import dataclass
@@ -89,7 +90,7 @@ def cycle_of(angle: Array) -> float:
 
 @units("rad", returns="rad", latex=r"\text{{the whole cycle that the angles cover}}")
 def cycle_length(angle: Array) -> Array:
-    """Return the result of `cycle_of` as a number for a formula."""
+    """Return the result of `cycle_of` as a number for use in a formula."""
     return np.asarray(cycle_of(angle))[()]
 
 

@@ -84,7 +84,10 @@ def film_mobility(
 
 
 def _nested(eps: float, ratio: float, load_direction: float, mesh: Mesh) -> Motion:
-    """Return the solution, started from the next coarser mesh, or first from the half that faces the load."""
+    """Return the solution, started from the next coarser mesh.
+
+    On the coarsest mesh it starts from a film on the half that faces the load.
+    """
     n, m = mesh.phi.size - 1, mesh.zeta.size - 1
     if min(n // _COARSEST[0], m // _COARSEST[1]) > 1 and n % 4 == m % 2 == 0:
         start = finer(_nested(eps, ratio, load_direction, mesh.coarser()).film)
@@ -108,7 +111,7 @@ def _squeezed(eps: float, ratio: float, mesh: Mesh) -> _UnitVelocityFilm:
 
 
 def _settled(system: _UnitVelocityFilm, load_direction: float, film: Mask) -> Motion:
-    """Return the converged pair of velocity and film: each is computed from the other in turn."""
+    """Return the converged pair of velocity and film; the iteration computes each from the other in turn."""
     film = system.may & film
     load = np.array([np.cos(load_direction), np.sin(load_direction)])
     for _ in range(_MOST_STEPS):

@@ -53,7 +53,10 @@ class Groove:
         return Groove(self.share[cases], self.start[cases], self.extent[cases])
 
     def covers(self, direction: Array, half: float = SECTOR) -> Array:
-        """Return the covered fraction of a sector around directions in the sleeve, (C, K) [rad]; [-]."""
+        """Return the fraction of a sector around directions in the sleeve that the groove covers [-].
+
+        The directions have the shape (C, K) [rad].
+        """
         extent = self.extent[:, None]
 
         def up_to(angle: Array) -> Array:
@@ -84,8 +87,8 @@ class GroovePassage:
     def with_distinct_rings(self) -> tuple["GroovePassage", NDArray[np.intp]]:
         """Return the same at angles whose rings differ in their number of nodes.
 
-        The second result are the indices of the old angles. Equal steps need no change. Otherwise the angles
-        are divided until the finest ring is the only one.
+        The second result contains the indices of the old angles. Equal steps need no change. Otherwise the
+        angles are divided until the finest ring is the only one.
         """
         steps = np.diff(self.load.angle, append=self.load.angle[0] + self.load.period)
         if np.ptp(steps) < 1e-9:
@@ -95,7 +98,7 @@ class GroovePassage:
         return GroovePassage(divided, replace(self.sleeve, swing=ring.S[2]), self.groove), own
 
     def ring(self, finer: int) -> tuple[Ring, NDArray[np.intp]]:
-        """Return the finest nodes, with the swing of the sleeve as the third row of their load.
+        """Return the finest nodes; the swing of the sleeve is the third row of their load.
 
         The second result marks the load's own angles.
         """
@@ -139,7 +142,7 @@ class GroovedLaw:
         return fewer
 
     def covered(self, nodes: int) -> Array:
-        """Return the fraction s on a ring, cached."""
+        """Return the fraction s on a ring; it is cached."""
         if nodes not in self._covered:
             self._covered[nodes] = self.passing.covered(nodes)
         return self._covered[nodes]
@@ -152,7 +155,7 @@ class GroovedLaw:
 
 
 def lift_of(share: Array, extent: Array, pressure: Array) -> Array:
-    """Return the load number that a supply pressure supports at rest in a groove and over its lands.
+    """Return the load number that the supply pressure in a groove and over its lands supports at rest.
 
     It is 0 without a groove. Over the lands the pressure falls linearly to that of the ends, so the groove
     counts with its width and half that of the lands. For an arc only the component along its middle remains,
@@ -197,14 +200,14 @@ def lifting(lift: Array, sleeve: PartRotation, groove: Groove, angle: Array) -> 
 
 
 def grooved_orbit(passing: GroovePassage, ratio: Array) -> Orbit:
-    """Return the periodic orbit of each case by the mobility with its groove; NaN where none was found.
+    """Return the periodic orbit of each case by the mobility with its groove; NaN if it has none.
 
     Parameters
     ----------
     passing
         Load, groove and sleeve.
     ratio
-        (C,) width over diameter B/D; it and that of the lands 0.02 … 10 [-].
+        (C,) width over diameter B/D, which must be 0.02 … 10, also for the lands [-].
     """
     divided, own = passing.with_distinct_rings()
     orbit = periodic_orbit(divided.load, GroovedLaw(ratio, divided))

@@ -108,7 +108,7 @@ class Ring:
         return np.diff(self.place, prepend=self.place[-1] - self.period)
 
     def every(self, stride: int) -> "Ring":
-        """Return the ring of every stride-th node."""
+        """Return the ring that consists of every stride-th node."""
         part = slice(None, None, stride)
         return Ring(self.place[part], self.period, self.S[..., part], self.w[..., part])
 
@@ -118,7 +118,7 @@ class Ring:
 
 
 def periodic_orbit(load: CyclicLoad, law: MobilityLaw) -> Orbit:
-    """Return the orbit of every case, by the mobility of a law; NaN where none was found.
+    """Return the orbit of every case, by the mobility of a law; NaN for a case without a periodic orbit.
 
     Parameters
     ----------
@@ -172,7 +172,7 @@ def ring_of(load: CyclicLoad, finer: int = 1) -> tuple[Ring, NDArray[np.intp]]:
 
 
 def _fill(whole: Orbit, load: CyclicLoad, law: MobilityLaw, part: Mask, finer: int) -> None:
-    """Store the orbits of those cases of a part that converge."""
+    """Store the orbits of those cases in a part that converge."""
     if not part.any():
         return
     ring, own = ring_of(load.of(part), finer)
@@ -189,10 +189,10 @@ def _fill(whole: Orbit, load: CyclicLoad, law: MobilityLaw, part: Mask, finer: i
 
 
 def _nested(ring: Ring, law: MobilityLaw) -> tuple[Array, Mask, Array, list[Array]]:
-    """Return the orbits on the finest ring, started from coarser ones, and further results.
+    """Return the orbits on the finest ring, started from coarser rings, and further results.
 
-    These are a mask of converged cases, the error of the gap at the nodes, and the smallest gaps between the
-    nodes of every ring, the finest last; NaN where a ring did not converge.
+    These are a mask of converged cases, the error of the gap at the nodes, and for every ring the smallest
+    gap between its nodes, the finest ring last; NaN where a ring did not converge.
     """
     stride = 1 << max(0, int(np.log2(ring.place.size / _COARSEST)))
     tolerance = _ROUGH if stride > 1 else TOLERANCE
@@ -228,7 +228,10 @@ def _halved(e: Array, nodes: int) -> Array:
 
 
 def _settled(ring: Ring, law: MobilityLaw, e: Array, tolerance: float, tried: Mask) -> tuple[Array, Mask]:
-    """Return the result of Newton's method from a start, and a mask of cases converged away from the wall."""
+    """Return the result of Newton's method from a start, and a mask of the converged cases.
+
+    A case also counts as converged only if its orbit stays away from the wall.
+    """
     left, settled = tried.copy(), np.zeros(tried.shape, bool)
     a = differences(ring.steps())
     for _ in range(_MOST_STEPS if left.any() else 0):
@@ -247,9 +250,9 @@ def _settled(ring: Ring, law: MobilityLaw, e: Array, tolerance: float, tried: Ma
 
 
 def _limited(e: Array, change: Array) -> tuple[Array, Array]:
-    """Return the applied change, limited so that each node stays within its bearing.
+    """Return the change as it is applied: limited so that each node stays within its bearing.
 
-    The second result is its largest magnitude over the gap, (C,).
+    The second result is its largest magnitude relative to the gap, (C,).
     """
     gap, length = 1 - np.hypot(*e), np.hypot(*change)
     share = np.minimum(1.0, _LONGEST / np.maximum(length, _LONGEST))
@@ -262,7 +265,7 @@ def _limited(e: Array, change: Array) -> tuple[Array, Array]:
 
 
 def _rate(ring: Ring, e: Array, law: MobilityLaw) -> tuple[Array, Array]:
-    """Return d(eps)/d(theta), (2, C, K), and its derivatives by eps, (2, 2, C, K)."""
+    """Return d(eps)/d(theta), (2, C, K), and its derivatives with respect to eps, (2, 2, C, K)."""
     size = np.hypot(*ring.S)
     loaded = size > 0
     c, s = np.where(loaded, ring.S / np.where(loaded, size, 1.0), [[[1.0]], [[0.0]]])

@@ -21,7 +21,7 @@ class MobilityLaw(Protocol):
     """A mobility M(xi, eta) of some cases."""
 
     def __call__(self, xi: Array, eta: Array) -> tuple[Array, Array]:
-        """Return M, (2, C, K), and its derivatives by xi and eta, (2, 2, C, K) [-]."""
+        """Return M, (2, C, K), and its derivatives with respect to xi and eta, (2, 2, C, K) [-]."""
 
     def of(self, cases: Mask) -> "MobilityLaw":
         """Return the same law for a subset of the cases."""

@@ -61,7 +61,7 @@ def mobility_map() -> MobilityMap:
 
 
 def mapped_mobility(eps: Array, ratio: Array, load_direction: Array) -> Array:
-    """Return the mobility M: the journal velocity under a load if the film does not rotate [-].
+    """Return the mobility M: the journal velocity that a load causes if the film does not rotate [-].
 
     Parameters
     ----------
@@ -115,14 +115,14 @@ def mapped_mobility_along_load(xi: Array, eta: Array, ratio: Array) -> Array:
 
 
 def mapped_film_under_load(xi: Array, eta: Array, ratio: Array) -> Array:
-    """Return what the film does under the load, in Booker's frame [-].
+    """Return the largest pressure and the side flow of the film under a load, in Booker's frame [-].
 
     Parameters
     ----------
     xi
         Relative eccentricity along the load on the journal [-].
     eta
-        The same ahead of the load, a quarter turn in the positive sense [-].
+        Relative eccentricity ahead of the load [-].
     ratio
         Width over diameter B/D, 0.02 … 10 [-].
 
@@ -143,7 +143,7 @@ def mapped_film_under_load(xi: Array, eta: Array, ratio: Array) -> Array:
 
 
 def mobility_error(xi: Array, eta: Array, ratio: Array) -> Array:
-    """Return the largest error [-] measured near a point between the map and new, finer solutions.
+    """Return the largest measured difference [-] near a point between the map and new, finer solutions.
 
     Returns
     -------
@@ -172,7 +172,7 @@ def coordinates(xi: Array, eta: Array) -> tuple[Array, Array]:
 
 
 def encode(xi: float, eta: float, ratio: float, motion: Motion) -> Array:
-    """Return the smooth interpolated values, (4,), of a solution with its velocity along the load."""
+    """Return the values, (4,), by which the map interpolates a solution smoothly."""
     h = 1 - xi
     along, ahead = motion.velocity
     return np.array([
@@ -206,7 +206,10 @@ def _accepted(xi: Array, eta: Array, ratio: Array) -> tuple[Array, Array, Array]
 
 
 def _look_up(part: str, xi: Array, eta: Array, ratio: Array) -> Array:
-    """Return interpolated motion or film at points of any shape, (functions, ...); one width is fastest."""
+    """Return the interpolated motion or film at points of any shape, (functions, ...).
+
+    It is fastest if all points have the same width.
+    """
     axes = mobility_map().axes
     x, v = np.broadcast_arrays(*coordinates(xi, eta))
     if ratio.size == 1:

@@ -31,12 +31,12 @@ class PartRotation:
         return PartRotation(self.turns[cases], self.period, self.swing[cases])
 
     def at(self, place: Array, swing: Array) -> Array:
-        """Return the angle at crank angles from the swing there, (C, K) [rad]."""
+        """Return the angle at crank angles, given the swing there, (C, K) [rad]."""
         return np.asarray(swing + 2 * np.pi * self.turns[:, None] * place / self.period)
 
 
 def turning(angle: Array, period: float, speed: Array) -> PartRotation:
-    """Return the rotation of a part from its speed in the frame over that of the crank.
+    """Return the rotation of a part from its speed in the frame, relative to the speed of the crank.
 
     Parameters
     ----------

@@ -55,7 +55,7 @@ def short_film_under_load(xi: Array, eta: Array, ratio: Array) -> Array:
 def _steepest(eps: Array, direction: Array) -> Array:
     """Return the largest cos(phi − alpha)/H³ over the half film.
 
-    Newton's method starts from the best of some angles.
+    Newton's method starts from the best of a set of sampled angles.
     """
     start, end = _sommerfeld_angle(direction - np.pi / 2, eps), _sommerfeld_angle(direction + np.pi / 2, eps)
     gamma = start + np.linspace(0, 1, 49)[:, None] * (end - start)

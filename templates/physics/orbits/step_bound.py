@@ -57,7 +57,7 @@ def least_between(place: Array, period: float, gap: Array) -> Array:
 
 
 def step_bound(films: Sequence[Array]) -> Array:
-    """Return the bound of the relative error of the last gap in a sequence of rings, each twice as fine.
+    """Return the bound of the relative error of the last gap, from rings of which each is twice as fine.
 
     Parameters
     ----------

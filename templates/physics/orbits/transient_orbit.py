@@ -109,7 +109,7 @@ def sampled_orbit(marched: TransientOrbit | None, load: CyclicLoad) -> Orbit:
 
 
 def along_march(marched: TransientOrbit, load: CyclicLoad, eps: Array) -> tuple[Array, Array, Array, Array]:
-    """Return pressure, side flow, shear, and the work of the load on the film, (1, N) each."""
+    """Return the pressure, the side flow, the shear, and the work of the load on the film, (1, N) each."""
     P, flow, shear = (_at(marched, v, load)[None] for v in (marched.P_max, marched.side_flow, marched.shear))
     step = load.period / marched.place.size
     rate = [_at(marched, (np.roll(e, -1) - np.roll(e, 1)) / (2 * step), load) for e in marched.eps]
@@ -122,7 +122,7 @@ def _at(marched: TransientOrbit, values: Array, load: CyclicLoad) -> Array:
 
 
 def _report(cycle: int, part: float, difference: float) -> None:
-    """Report the number of the cycle, and the change over the last cycle relative to the gap."""
+    """Report the number of the cycle, and the change in the last cycle relative to the gap."""
     apart = "" if difference == np.inf else f", difference {difference:.1g} of at most {REPEATS:g}"
     report((cycle - 1 + part) / MOST_CYCLES, f"cycle {cycle} of at most {MOST_CYCLES}{apart}")
 
@@ -138,7 +138,7 @@ def _full(journal: Journal, eps: Array) -> State:
 def _next(journal: Journal, states: list[State], S: Array, w: float, step: float) -> State | None:
     """Return the state after one step; None if the step fails.
 
-    The first step, and a step that fails with second order, is repeated with first order in several parts.
+    The first step, and any step that fails with second order, is repeated with first order in several parts.
     """
     here = states[-1]
     if len(states) > 1:

@@ -35,7 +35,7 @@ def logarithm_of_land(inner: Array, outer: Array) -> Array:
     latex=r"\frac{{\pi}}{{8}}\left(\frac{{{0}^2-{1}^2}}{{\ln({0}/{1})}}-\frac{{{2}^2-{3}^2}}{{\ln({2}/{3})}}\right)",
 )
 def effective_area(D: Array, D_0: Array, d_0: Array, d: Array) -> Array:
-    r"""Return the effective area, load over recess pressure [m²].
+    r"""Return the effective area: load over recess pressure [m²].
 
     .. math:: A_e = \frac{\pi}{2}\left[\frac{R^2-R_0^2}{\ln(R/R_0)} - \frac{r_0^2-r^2}{\ln(r_0/r)}\right]
 

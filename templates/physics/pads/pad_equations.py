@@ -59,7 +59,7 @@ def cell_lengths(nodes: Array) -> Array:
 
 
 def _modes(zeta: Array) -> tuple[Array, Array, Array]:
-    """Return eigenvalues of the flow across (N, m), the modes' shares of a constant, and mid-width values."""
+    """Return eigenvalues of the flow across (N, m), each mode's share of a constant, and mid-width values."""
     step, cells = 1 / np.diff(zeta), cell_lengths(zeta)[:, :-1]
     stiff = np.zeros((*cells.shape, cells.shape[-1]))
     i = np.arange(cells.shape[-1])

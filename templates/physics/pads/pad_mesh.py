@@ -71,7 +71,7 @@ def grading(a: Array, width: Array) -> NodeMap:
 
 
 def _layer_slope(layer: Array) -> Array:
-    """Return the slope at its end of a map with equal numbers of nodes per decade down to the layer [-]."""
+    """Return the slope at the end of a map with equal numbers of nodes per decade down to the layer [-]."""
     return layer * np.arcsinh(1 / layer)
 
 
@@ -85,7 +85,7 @@ def _stretch(logarithm: Array) -> Array:
 
 
 def across(a: Array, width: Array, m: int) -> Array:
-    """Return nodes from the middle to the side, graded to its edge layer, as thick as the pad is long [-].
+    """Return nodes from the middle to the side, graded to an edge layer as thick as the pad is long [-].
 
     Parameters
     ----------

@@ -28,7 +28,7 @@ def _near_one(a: Array) -> Mask:
 
 
 def _ratio_away_from_one(a: Array) -> Array:
-    """Return the film ratio, moved off 1 so that an unused closed form stays finite there."""
+    """Return the film ratio, moved away from 1 so that a closed form that is not used there stays finite."""
     return np.where(_near_one(a), 2.0, a)
 
 

@@ -91,7 +91,7 @@ class PadFilm(ABC):
 
     @abstractmethod
     def gradient(self, x: Array) -> Array:
-        """Return the pressure gradient h_o²/(eta U) dp/dx at mid-width and one x/l per pad."""
+        """Return the pressure gradient h_o²/(eta U) dp/dx at mid-width and at one x/l per pad."""
 
 
 def pad_film(level: str, a: Array, width: Array) -> PadFilm:
@@ -131,8 +131,8 @@ def pad_film(level: str, a: Array, width: Array) -> PadFilm:
 def shear_of_wedge(a: Array) -> Array:
     """Return the friction due to the mean velocity gradient alone, F h_o/(eta U l b) [-].
 
-    It is ln a/(a − 1), and 1 for streamers: those that carry the inlet's flow fill h_i/h of a diverging film,
-    and the mean of h_i h_o/h² is 1.
+    It is ln a/(a − 1), and 1 for streamers: those that carry the flow of the inlet fill h_i/h of a diverging
+    film, and the mean of h_i h_o/h² is 1.
 
     Parameters
     ----------
@@ -175,7 +175,7 @@ class InfinitePad(PadFilm):
         return pressure_incline_Rayleigh_1918(x, _bearing(self.a)[..., None]) + 0 * self.a[..., None]
 
     def gradient(self, x: Array) -> Array:
-        """Return the pressure gradient 6 (H − H_m)/H³; at H_m = 2a/(a + 1) the flow is by shear alone."""
+        """Return the pressure gradient 6 (H − H_m)/H³; at H_m = 2a/(a + 1) there is only shear flow."""
         a = _bearing(self.a)
         H = a - (a - 1) * x
         return 6 * (H - 2 * a / (a + 1)) / H**3 + 0 * self.a
@@ -213,13 +213,13 @@ class FinitePad(PadFilm):
         return np.maximum(interpolated(self.P, self.mesh.coordinate(x))[0], 0) * ((x > 0) & (x < 1))
 
     def gradient(self, x: Array) -> Array:
-        """Return the pressure gradient h_o²/(eta U) dp/dx at mid-width and one x/l per pad, by cubics."""
+        """Return the pressure gradient h_o²/(eta U) dp/dx at mid-width and at one x/l per pad, by cubics."""
         t = self.mesh.coordinate(x[..., None])
         return (6 * interpolated(self.P, t)[1] / self.mesh.slope(t))[..., 0]
 
 
 def interpolated(values: Array, t: Array) -> tuple[Array, Array]:
-    """Return values and derivatives d/dt at t by the cubic through four of n + 1 equally spaced nodes.
+    """Return the values and derivatives d/dt at t of the cubic through four of n + 1 equally spaced nodes.
 
     Parameters
     ----------
@@ -279,7 +279,7 @@ def finite_pad(a: Array, width: Array, along: int = 64, across_half: int = 16) -
 
 
 def _peak(P: Array) -> tuple[Array, Array]:
-    """Return height and t of the largest pressure, from the parabola through three nodes around it."""
+    """Return the value of the largest pressure and its place t, from a parabola through three nodes."""
     n = P.shape[-1] - 1
     k = np.clip(P.argmax(axis=-1), 1, n - 1)
     before, top, after = (np.take_along_axis(P, (k + i)[..., None], axis=-1)[..., 0] for i in (-1, 0, 1))

@@ -108,7 +108,7 @@ def _extrapolated(a: Array, angle: Array, reach: Array) -> Array:
 
 
 def collar_temperature(collar: Collar, film: CollarFilm) -> Array:
-    """Return the temperature of a film that carries the load, NaN without a supply [K]."""
+    """Return the temperature of a film that carries the load; NaN without a supply [K]."""
     gain = collar.load / collar.heat_capacity * film.friction / (film.inlet - film.side / 2)
     kept = collar.carried * (film.inlet - film.side)
     return collar.T_supply + gain * (kept / (film.inlet - kept) + 0.5)
@@ -131,7 +131,7 @@ def _excess(law: Law, logarithm: Array, collar: Collar, oil: tuple[Array, ...]) 
 def working_collar(collar: Collar, law: Law, *oil: Array) -> CollarFilm:
     """Return the film that carries the load with the oil's viscosity at the temperature of the film.
 
-    There is none where the heat balance has it hotter than `HOTTEST`.
+    There is no film if its heat balance would make it hotter than `HOTTEST`.
 
     Parameters
     ----------

@@ -23,7 +23,7 @@ WEIBULL, LEAST = 1.5, 0.05
 
 
 def _last(value: Array, curve: Array) -> Array:
-    """Return a value for each point, shaped to broadcast with a curve for each point."""
+    """Return a value for each point, in a shape that broadcasts with a curve for each point."""
     return np.asarray(value)[..., None] if np.ndim(curve) else np.asarray(value)
 
 
@@ -36,14 +36,14 @@ def relative_axial_load(F_a: Array, f_0: Array, C_0: Array) -> Array:
 
 @units("N", "1", returns="1")
 def factor_is_known(F_a: Array, f_0: Array) -> Truth:
-    """Return whether f0 is given, if there is an axial load."""
+    """Return whether f0 is given at all points with an axial load."""
     largest = np.max(F_a, axis=-1) if np.ndim(F_a) else F_a
     return (largest == 0) | ~np.isnan(f_0)
 
 
 @units("N", None, returns="1")
 def is_bearable(F_a: Array, elements: str) -> Truth:
-    """Return whether this calculation covers an axial load on the given rolling elements."""
+    """Return whether this calculation covers an axial load on the given kind of rolling elements."""
     return elements == "ball" or bool(np.all(np.asarray(F_a) == 0))
 
 
@@ -63,7 +63,10 @@ def equivalent_load_ISO_281_2007(F_r: Array, F_a: Array, f_0: Array, C_0: Array)
 @on_paper("mean of P^p over the cycle, to the power 1/p")
 @units(None, "1", returns="N")
 def mean_load(P: Array, p: Array) -> Array:
-    """Return the constant load of the same life [N]: the mean of P^p at equal steps, to the power 1/p."""
+    """Return the constant load that gives the same life [N].
+
+    It is the mean of P^p at equal steps, to the power 1/p.
+    """
     if not np.ndim(P):
         return np.asarray(P)[()]
     largest = np.max(P, axis=-1, keepdims=True)

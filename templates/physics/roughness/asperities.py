@@ -30,7 +30,7 @@ _POINTS = 48
 
 
 def summit_integral(u: Array) -> Array:
-    """Return F_{5/2} at a gap over roughness of 0 or more, exactly, by the parabolic cylinder function [-].
+    """Return F_{5/2} at gap/roughness of 0 or more, exactly, by the parabolic cylinder function [-].
 
     Examples
     --------
@@ -55,13 +55,13 @@ def _quadrature() -> tuple[Array, Array]:
 
 
 def splined_summit_integral(u: Array) -> Array:
-    """Return F_{5/2} at a gap over roughness of 0 or more, from the spline; 0 from `FARTHEST` on [-]."""
+    """Return F_{5/2} at gap/roughness of 0 or more, from the spline; 0 above `FARTHEST` [-]."""
     return np.where(u < FARTHEST, np.exp(_logarithm()(np.minimum(u, FARTHEST))), 0.0)
 
 
 @units("1", "1", "Pa", returns="Pa", latex=r"\frac{{16\sqrt{{2}}\,\pi}}{{15}}\,{0}^2\sqrt{{{1}}}\,{2}")
 def contact_scale(product: Array, slenderness: Array, modulus: Array) -> Array:
-    """Return the contact pressure over F_{5/2} [Pa].
+    """Return the ratio of contact pressure to F_{5/2} [Pa].
 
     Parameters
     ----------

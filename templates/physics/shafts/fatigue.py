@@ -57,8 +57,8 @@ def mean_share(correction: str, mean: Array, ultimate: Array, coefficient: Array
 def cycles_Basquin_1910(amplitude: Array, coefficient: Array, exponent: Array, endurance: Array) -> Array:
     """Return the cycles to failure N [1] at a reversed amplitude [Pa], from sigma_ar = sigma_f' (2 N)^b.
 
-    Life is infinite, returned as NaN, up to the endurance limit [Pa] (NaN: there is none), without stress,
-    and beyond 1e300 cycles.
+    The life is infinite, returned as NaN, up to the endurance limit [Pa] (NaN if there is none), without
+    stress, and beyond 1e300 cycles.
     """
     with np.errstate(divide="ignore", over="ignore"):
         logarithm = (np.log(amplitude) - np.log(coefficient)) / exponent - np.log(2)
@@ -68,7 +68,7 @@ def cycles_Basquin_1910(amplitude: Array, coefficient: Array, exponent: Array, e
 
 @units("Pa", "Pa", "1", "1", returns="Pa", latex=r"\max\left({1}\,\left(2\,{3}\right)^{{{2}}},{0}\right)")
 def allowable_amplitude(endurance: Array, coefficient: Array, exponent: Array, life: Array) -> Array:
-    """Return the permissible reversed amplitude [Pa] for a number of cycles; NaN cycles: infinite life.
+    """Return the permissible reversed amplitude [Pa] for a number of cycles; NaN cycles mean infinite life.
 
     It is the larger of Basquin's line at that life and the endurance limit [Pa]; NaN if there is neither.
     """
@@ -95,7 +95,7 @@ def ratio_or_none(strength: Array, stress: Array) -> Array:
 
 @units(None, "Pa", returns="1")
 def mean_is_used(correction: str, mean: Array) -> Any:
-    """Return whether the correction uses the mean stress [Pa] as it is, not a compressive one as zero."""
+    """Return whether the correction uses the mean stress [Pa] itself, instead of zero for compression."""
     return ~((mean < 0) & (correction in (GOODMAN, GERBER)))
 
 

@@ -51,14 +51,14 @@ class _Bidiagonal:
 
 @units("kg*m**2", "N*m/rad", None, returns="1")
 def fits(J: Array, k: Array, ends: str) -> bool:
-    """Return whether J [..., inertia] and k [..., spring], NaN if missing, form a chain."""
+    """Return whether J [..., inertia] and k [..., spring] form a chain; missing entries are NaN."""
     springs = np.shape(k)[-1] if np.ndim(k) else 0
     return springs == np.shape(J)[-1] - (ends == FREE)
 
 
 @units("kg*m**2", "N*m/rad", "1", returns="1")
 def manageable(J: Array, k: Array, orders: Array) -> bool:
-    """Return whether chains [..., inertia] and tables of orders [..., order] are within size limits."""
+    """Return whether chains [..., inertia] and tables of orders [..., order] are within the size limits."""
     several = np.shape(np.atleast_1d(orders))
     chains = np.broadcast_shapes(np.shape(J)[:-1], np.shape(k)[:-1], several[:-1])
     longest = max(np.shape(J)[-1], several[-1])
@@ -102,10 +102,10 @@ def _reduced(J: Array, k: Array, ends: str) -> _Bidiagonal:
 
 
 def _turned(first: Array, second: Array) -> _Bidiagonal:
-    """Return the square bidiagonal matrix of a chain with free ends.
+    """Return the matrix of a chain with free ends; rotations of its rows make it square.
 
-    Column i contains first[i] and, below it, -second[i]. Each rotation is a product of positive numbers, so
-    no digit is lost.
+    Column i of the original matrix contains first[i] and, below it, -second[i]. Each rotation multiplies only
+    positive numbers, so that no digit is lost.
     """
     diagonal, above, cosines, sines = (np.zeros_like(first) for _ in range(4))
     rest = first[..., :1]
@@ -120,7 +120,7 @@ def _turned(first: Array, second: Array) -> _Bidiagonal:
 
 
 def _turned_back(turned: _Bidiagonal, vectors: Array) -> Array:
-    """Return vectors [..., mode, row] of the square matrix as vectors of the chain (one row more)."""
+    """Convert vectors [..., mode, row] of the square matrix to those of the chain, with one more row."""
     rows = np.concatenate([vectors, np.zeros((*vectors.shape[:-1], 1))], axis=-1)
     for i in reversed(range(vectors.shape[-1])):
         cosine, sine = turned.cosines[..., i, None], turned.sines[..., i, None]
@@ -141,7 +141,7 @@ def _singular_values(matrix: Array) -> Array:
 
 
 def _left_vectors(matrix: Array) -> Array:
-    """Return the left singular vectors [..., mode, row] in the order of the values; NaN like the values."""
+    """Return the left singular vectors [..., mode, row] in the order of the values; NaN with them."""
     finite = _finite(matrix)
     columns = np.linalg.svd(np.where(finite, matrix, 0.0))[0]
     return np.where(finite, columns[..., ::-1].swapaxes(-1, -2), np.nan)

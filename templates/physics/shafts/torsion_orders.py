@@ -1,8 +1,8 @@
 """Critical speeds, where engine orders meet natural frequencies, and the lines of a Campbell diagram.
 
-Used by `torsional_vibration`. An order is a number of excitations per revolution: a four-stroke engine has
-whole and half orders. The natural frequencies of a chain do not depend on speed, so they are horizontal lines
-in the diagram.
+`torsional_vibration` uses this module. An order is a number of excitations per revolution: a four-stroke
+engine has whole and half orders. The natural frequencies of a chain do not depend on speed, so they are
+horizontal lines in the diagram.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ RPM = 2 * np.pi / 60
 
 @units("rad/s", "1", returns="rad/s", latex=r"\frac{{{0}}}{{{1}}}")
 def critical_speeds(omega: Array, orders: Array) -> Array:
-    """Return the speeds [rad/s], [..., order, mode], at which orders excite omega [..., mode]."""
+    """Return the speeds [rad/s], [..., order, mode], at which orders excite the modes [..., mode]."""
     return omega[..., None, :] / np.atleast_1d(orders)[..., :, None]
 
 
 @units("rad/s", returns="rad/s", latex=r"{0}_1+\frac{{i}}{{20}}\left({0}_2-{0}_1\right)")
 def campbell_speeds(speeds: Array) -> Array:
-    """Return equally spaced speeds [rad/s] along the diagram, from the lower to the upper one of [..., 2]."""
+    """Return equally spaced speeds [rad/s] along the diagram, between the two limits in [..., 2]."""
     if not np.ndim(speeds):
         return np.full(PLACES, np.nan)
     return np.linspace(speeds[..., 0], speeds[..., -1], PLACES, axis=-1)
@@ -48,7 +48,7 @@ def ascending(speeds: Array) -> bool:
 
 @units("rad/s", "1", "rad/s", returns="1")
 def resonances(critical: Array, orders: Array, speeds: Array) -> Any:
-    """Return a text on the critical speeds [rad/s; ..., order, mode] in the range; empty without a range."""
+    """Return a text about the critical speeds [rad/s; ..., order, mode] in the range, if there is one."""
     if not np.ndim(speeds) or np.isnan(critical).any():
         return ""
     points = np.broadcast_shapes(critical.shape[:-2], speeds.shape[:-1], np.shape(orders)[:-1])
@@ -62,7 +62,7 @@ def resonances(critical: Array, orders: Array, speeds: Array) -> Any:
 
 
 def _sentence(critical: Array, orders: Array, speeds: Array) -> str:
-    """Return a text on the critical speeds of one chain within the range, in ascending order.
+    """Return a text about the critical speeds of one chain in the range, in ascending order.
 
     Mode 0 of a free chain has no critical speed.
     """

@@ -1,7 +1,7 @@
 """A crank throw in torsion: the sections of its parts, and the choice of the closed form.
 
-Used by `crank_stiffness`. Both closed forms are fitted to tests: Carter's to throws with slender webs, Ker
-Wilson's to throws whose pin overlaps the journals.
+`crank_stiffness` uses this module. Both closed forms are fitted to tests: Carter's to throws with slender
+webs, Ker Wilson's to throws whose pin overlaps the journals.
 
 References
 ----------
@@ -32,7 +32,7 @@ TOO_SHORT = (
 def ring(outer: Array, inner: Array) -> Array:
     """Return the difference of the fourth powers of outer and inner diameter [m⁴].
 
-    It is 32/π times the polar moment of area [m⁴], factored so that thin walls lose no digits.
+    It is 32/π times the polar moment of area, factored so that thin walls lose no digits.
     """
     return (outer - inner) * (outer + inner) * (outer**2 + inner**2)
 
@@ -45,7 +45,7 @@ def recommended(overlap: Array) -> Any:
 
 @units("m", "m", returns="1")
 def reason(overlap: Array, effective_throw: Array) -> Any:
-    """Return a text on why that formula is recommended; the throw [m] is Ker Wilson's effective one."""
+    """Return the reason why that formula is recommended; the throw [m] is Ker Wilson's effective one."""
     cases = [(overlap > 0) & (effective_throw < 0), overlap > 0, overlap <= 0]
     return _selected(cases, [TOO_SHORT, OVERLAPPING, APART])
 

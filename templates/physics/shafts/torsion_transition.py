@@ -54,7 +54,7 @@ def share_of_wilson(overlap: Array, journal: Array, pin: Array) -> Array:
 @units("1", "N*m/rad", "N*m/rad", returns="N*m/rad",
        latex=r"\left(\frac{{1-{0}}}{{{1}}}+\frac{{{0}}}{{{2}}}\right)^{{-1}}")  # fmt: skip
 def joined_stiffness(share: Array, carter: Array, wilson: Array) -> Array:
-    """Return the stiffness [N m/rad] blended from Carter's and a share [1] of Ker Wilson's flexibility.
+    """Return the stiffness [N m/rad] whose flexibility blends Carter's with a share [1] of Ker Wilson's.
 
     If the share is 0 or 1 the result is exactly that of one formula.
     """
@@ -70,7 +70,7 @@ def recommended(share: Array) -> Any:
 
 @units("1", "m", returns="1")
 def reason(share: Array, effective_throw: Array) -> Any:
-    """Return a text on why that formula is recommended; the throw [m] is Ker Wilson's effective one."""
+    """Return the reason why that formula is recommended; the throw [m] is Ker Wilson's effective one."""
     cases = [(share >= 1) & (effective_throw < 0), share >= 1, share <= 0, share > 0]
     return _selected(cases, [TOO_SHORT, OVERLAPPING, APART, NEITHER])
 

@@ -135,7 +135,7 @@ class FedOrbit:
         return FedOrbit(**values, marches=self.marches, flooded=self.flooded)
 
     def required(self) -> "FedOrbit":
-        """Return the same orbit if a film repeats, or if there are several points.
+        """Return the same orbit if its film repeats or there are several points; otherwise raise an error.
 
         Raises
         ------
@@ -149,12 +149,12 @@ class FedOrbit:
 
     @property
     def verdict(self) -> str:
-        """Return how a march of level supplied ended, numbered for several points; empty without one."""
+        """Return the outcome of a march at level supplied, numbered for several points; else empty."""
         return _of_points([marched.verdict.value if marched else "" for marched in self.marches])
 
     @property
     def reason(self) -> str:
-        """Return a text on why no film repeats; empty if one does or level supplied was not used."""
+        """Return the reason why no film repeats; empty if one does or level supplied was not used."""
         return _of_points([marched.reason if marched else "" for marched in self.marches])
 
     @property
@@ -178,7 +178,7 @@ class FedOrbit:
         return self.of_marches(lambda m: np.nan if m.verdict in UNREPEATED else m.mean_feed)
 
     def of_marches(self, value: Callable[[SuppliedOrbit], float]) -> Array:
-        """Return a value from the march of each point; NaN without one, (...)."""
+        """Return a value of each point's march; NaN for points without a march, (...)."""
         if not self.marches:
             return self._everywhere(np.nan)
         values = [value(marched) if marched else np.nan for marched in self.marches]
@@ -194,7 +194,7 @@ class FedOrbit:
 
 
 def _of_points(texts: Sequence[str]) -> str:
-    """Return a text for all points, or a text for each point; empty if no text applies."""
+    """Return one text for all points, or a text for each point; empty if no text applies."""
     if len(set(texts)) <= 1:
         return next(iter(texts), "")
     return "; ".join(f"point {number}: {text}" for number, text in enumerate(texts, 1) if text)
@@ -255,7 +255,7 @@ def fed_orbit(level: str, fed: FedDuty) -> FedOrbit:
 def fed_film(level: str, fed: FedDuty, orbit: FedOrbit) -> CycleFilm:
     """Return pressure, loss and flow along an orbit.
 
-    The side flow of level supplied includes the flow driven by the supply.
+    At level supplied the side flow includes the flow that the supply drives.
     """
     cases = _cases(level, fed)
     load, points = cases.load, cases.points
@@ -280,10 +280,10 @@ def fed_film(level: str, fed: FedDuty, orbit: FedOrbit) -> CycleFilm:
 
 
 def _driven(level: str, cases: _Cases, eps: Array, weight: Array) -> Array:
-    """Return the mean flow from the groove over both lands that the supply pressure drives, (C,).
+    """Return the mean flow that the supply pressure drives from the groove over both lands, (C,).
 
     The pressure of the film does not reduce it, as in ISO 7902-1 for a steady load. It is 0 if the level
-    ignores supply pressure, or includes this flow in the side flow.
+    ignores the supply pressure, or includes this flow in the side flow.
     """
     if level not in MOBILITY:
         return np.zeros(cases.ratio.shape)
@@ -351,7 +351,10 @@ def _cases(level: str, fed: FedDuty) -> _Cases:
 
 
 def _taken(level: str, ratio: Array, groove: Groove, turns: Array) -> Mask:
-    """Return a mask of the cases that a level supports, by bearing and land width and sleeve rotation."""
+    """Return a mask of the cases that a level supports.
+
+    It depends on the widths of bearing and lands, and on the rotation of the sleeve.
+    """
     low, high = WIDTHS[level]
     taken = (ratio >= low) & (ratio <= high)
     if level != "mobility_grooved":
@@ -413,7 +416,7 @@ def _marched(cases: _Cases, number: int, supply: Supply | None) -> SuppliedOrbit
 
 
 def _of_marches(cases: _Cases, marches: tuple[SuppliedOrbit | None, ...]) -> FedOrbit:
-    """Return the orbits of all cases; a starved film has NaN eccentricities, which no bound refuses."""
+    """Return the orbits of all cases; a starved film has eccentricities of NaN, which no bound refuses."""
     orbits = [
         _sampled(marched, cases.load.of(one)) if marched and marched.verdict not in UNREPEATED
         else _nowhere(cases.load.of(one))

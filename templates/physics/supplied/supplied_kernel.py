@@ -1,6 +1,6 @@
 r"""One step of a supplied film by Newton's method: the compiled kernel of level `supplied`.
 
-In the frame of the mesh the shear flow vanishes. The balance of a cell is, times 12,
+In the frame of the mesh the shear flow vanishes. Multiplied by 12, the balance of a cell is
 
 .. math:: 12\,\partial_\theta(\alpha H) = \partial_\varphi(H^3\partial_\varphi P)
     + (D/B)^2\,\partial_\zeta(H^3\partial_\zeta P) + \text{feed}, \quad P\ge0,\ 1-\alpha\ge0,\ P(1-\alpha)=0
@@ -11,10 +11,11 @@ nodes, and its position is accurate to second order.
 
 Circumferential conductances are the inverse of the mean of H^-3 between two nodes, by Simpson's rule. In each
 cell the complementarity condition (active set: the smaller of pressure and void is 0; or the function of
-Fischer and Burmeister) has two slopes, by pressure and by void; the unknown with the larger slope is
-eliminated. The remaining matrix is dominant by columns for every film: with r <= 1 the ratio of the smaller
-slope to the larger, the column of a full cell has 1 + r on its diagonal and conductances divided by their sum
-beside it; any other column has 1 + r, and r times these. So its banded factorisation needs no pivoting.
+Fischer and Burmeister) has two slopes, with respect to pressure and to void; the unknown with the
+larger slope is eliminated. The remaining matrix is diagonally dominant by columns for every film. Let
+r <= 1 be the ratio of the smaller slope to the larger. The diagonal of every column is 1 + r. The other
+entries of the column of a full cell are conductances divided by their sum; those of any other column are r
+times these. So the banded factorisation needs no pivoting.
 """
 
 import numpy as np
@@ -36,9 +37,10 @@ NEAREST = 1e4
 
 @compiled
 def covered(mesh: Mesh, places: Array) -> Array:
-    """Return, (3, n, m), a mask of nodes in a pocket and the nearness of an edge ahead and behind.
+    """Return, (3, n, m), a mask of nodes in a pocket, and the nearness of an edge ahead and of one behind.
 
-    The nearness is step/d − 1 with d the distance to an edge that lies before the next node; 0 without one.
+    The nearness is step/d − 1, with d the distance to an edge that lies before the next node; it is 0 without
+    an edge.
 
     places: (k, 3) centre in the mesh [rad], half angle [rad] and half length [-] of each pocket.
     """
@@ -88,7 +90,7 @@ def coefficients(mesh: Mesh, e: Array) -> tuple[Array, Array, Array]:
 
 @compiled
 def lost(mesh: Mesh, around: Array, across: Array, P: Array, loss: Array) -> None:
-    """Store in the output the outflow of the cells due to pressure, (n, m)."""
+    """Store the outflow of the cells due to pressure, (n, m), in the output array."""
     n, m = P.shape
     loss[:] = 0.0
     for i in range(n):
@@ -166,9 +168,9 @@ def eliminate(rows: Array, right: Array) -> None:
 def complement(P: Array, void: Array, A: Array, T: Array, smooth: bool) -> tuple[Array, Array, Array, Array]:
     """Return the linearised complementarity condition of every cell.
 
-    The changes are dP = alpha k + P0 and dvoid = beta k + v0, with one unknown k each. A and T turn pressure
-    and void into flow. The derivative by the void is the larger one where a cell is full, that by the
-    pressure elsewhere.
+    The changes are dP = alpha k + P0 and dvoid = beta k + v0, with one unknown k for each cell. A and T
+    convert pressure and void to flow. In a full cell the derivative with respect to the void is larger,
+    elsewhere that with respect to the pressure.
     """
     alpha, beta, P0, v0 = np.empty(P.shape), np.empty(P.shape), np.zeros(P.shape), np.zeros(P.shape)
     for i in range(P.shape[0]):
@@ -188,7 +190,7 @@ def complement(P: Array, void: Array, A: Array, T: Array, smooth: bool) -> tuple
 
 @compiled
 def borne(mesh: Mesh, alpha: Array, k: Array) -> tuple[float, float]:
-    """Return the components of the force of a pressure alpha k in the axes of the mesh."""
+    """Return the components of the force that a pressure alpha k exerts, in the axes of the mesh."""
     n, m = k.shape
     x, y = 0.0, 0.0
     for i in range(n):
@@ -202,7 +204,7 @@ def borne(mesh: Mesh, alpha: Array, k: Array) -> tuple[float, float]:
 
 @compiled
 def displacement(a: float, b: float, c: float, d: float, x: float, y: float) -> tuple[float, float]:
-    """Return (x, y) that solves [[a, b], [c, d]]; a least-squares solution if the determinant vanishes."""
+    """Return the solution (x, y) of [[a, b], [c, d]]; by least squares if the determinant vanishes."""
     size, det = a * a + b * b + c * c + d * d, a * d - b * c
     if abs(det) > 1e-13 * size:
         return (d * x - b * y) / det, (a * y - c * x) / det
@@ -211,7 +213,7 @@ def displacement(a: float, b: float, c: float, d: float, x: float, y: float) -> 
 
 @compiled
 def edges(around: Array, seen: Array, i: int, j: int) -> float:
-    """Return conductances from a node to adjacent pocket edges, in addition to those to the nodes there."""
+    """Return conductances from a node to adjacent pocket edges, to be added to those between nodes."""
     return float(around[i] * seen[1, i, j] + around[i - 1] * seen[2, i, j])
 
 
@@ -247,7 +249,7 @@ def responses(
     mesh: Mesh, flows: tuple[Array, Array], A: Array, T: Array, feeding: Array, loss: Array,
     law: tuple[Array, Array, Array, Array],
 ) -> Array:  # fmt: skip
-    """Return the unknown k of every cell without displacement and per component of it, (3, n, m)."""
+    """Return the unknown k of every cell, without and per component of displacement, (3, n, m)."""
     alpha, beta, P0, v0 = law
     n, m = A.shape
     own, right, k = np.empty((n, m)), np.empty((n * m, 3)), np.empty((3, n, m))
@@ -297,7 +299,8 @@ def solved(
     Feed and side flow are multiplied by 24. Pressure and void may be below 0 by the residual of Newton's
     method.
 
-    d(oil)/dtheta = rate·oil + rest, acceleration = inertia[0]·e + inertia[1:]; `state` is the initial guess.
+    The balances are d(oil)/dtheta = rate·oil + rest and acceleration = inertia[0]·e + inertia[1:]; `state` is
+    the initial guess.
     """
     e, P, void = state[0].copy(), state[1].copy(), state[2].copy()
     n, m = P.shape

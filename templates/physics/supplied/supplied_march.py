@@ -43,17 +43,17 @@ class TurnedAngle:
     """(N,) speed over Omega [-]."""
 
     def __call__(self, theta: Array) -> Array:
-        """Return the angle rotated since crank angle 0 [rad]."""
+        """Return the angle through which the part has rotated since crank angle 0 [rad]."""
         return self._since_first(theta - self.angle[0]) - self._at_zero
 
     @cached_property
     def of_cycle(self) -> float:
-        """Return the angle rotated in a cycle [rad]."""
+        """Return the angle through which the part rotates in a cycle [rad]."""
         return float(self._nodes[2][-1])
 
     @cached_property
     def _nodes(self) -> tuple[Array, Array, Array]:
-        """Return (N + 1,) angles from the first, speeds there and angles rotated since."""
+        """Return (N + 1,) angles from the first one, the speeds there, and the angles rotated since."""
         place = np.append(self.angle - self.angle[0], self.period)
         speed = np.append(self.speed, self.speed[0])
         turned = np.cumsum((speed[1:] + speed[:-1]) / 2 * np.diff(place))
@@ -110,7 +110,7 @@ class Duty:
     def _force(self) -> tuple[Array, NDArray[np.complex128]]:
         """Return ascending angles from before 0 to beyond the period, and the load there, x + i y.
 
-        With a period, `np.interp` would recompute both at every call.
+        They are stored because `np.interp` with a period would recompute both at every call.
         """
         angle = self.load.angle % self.load.period
         order = np.argsort(angle)
@@ -128,7 +128,7 @@ class Duty:
         return np.interp(theta % period, *self._force), w
 
     def seen(self, theta: Array) -> tuple[Array, Array]:
-        """Return load (K, 2) and pocket positions (K, k, 3) in axes of the mesh, as the kernel needs them."""
+        """Return load (K, 2) and pocket positions (K, k, 3) in the axes of the mesh, for the kernel."""
         S = np.interp(theta % self.load.period, *self._force) * np.exp(-1j * self.mesh_turning(theta))
         turned = self.journal_turning(theta)
         places = np.empty((theta.size, len(self.supply.pockets), 3))
@@ -169,14 +169,14 @@ def gap_at(mesh: Mesh, e: Array) -> Array:
 
 
 def start(mesh: Mesh, duty: Duty) -> State:
-    """Return a full film with the journal displaced half-way along the load."""
+    """Return a full film with the journal displaced by half the clearance along the load."""
     S = duty.seen(np.array([duty.begin]))[0][0]
     e, none = 0.5 * S / max(float(np.hypot(*S)), 1e-9), np.zeros((mesh.order.size, mesh.width.size))
     return State(duty.begin, e, none, none, none + gap_at(mesh, e)[:, None], np.zeros(2), 0.0)
 
 
 def stepped(mesh: Mesh, duty: Duty, states: list[State], h: float) -> State | None:
-    """Return the state after a step, of second order and by the active set if possible."""
+    """Return the state after a step, with second order and the active-set method if possible."""
     from templates.physics.supplied.supplied_kernel import covered, solved  # numba takes a second to load
 
     last = states[-1]
@@ -216,7 +216,7 @@ def _size(last: State, after: State, step: float) -> float:
 def marched(
     mesh: Mesh, duty: Duty, begin: State, step: float, say: Callable[[float], None]
 ) -> tuple[list[State], int, bool]:
-    """Return the states of one cycle, from its start, the number of halved steps, and whether it ended.
+    """Return the states of one cycle, the number of halved steps, and whether the cycle was completed.
 
     say: receives the completed fraction of the cycle before each step.
     """

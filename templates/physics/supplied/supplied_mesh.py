@@ -61,12 +61,13 @@ def supplied_mesh(
     edges
         Ascending half lengths of the pockets over B/2 [-].
     grooved
-        Whether the pressure also falls towards the pockets; the land is then finer at both of its sides.
+        Whether the pressure also falls towards the pockets; the mesh on the land is then finer at both of its
+        sides.
     gap
-        Expected least gap: where it is small, the film is short circumferentially, and its pressure falls
-        closer to the edges [-].
+        Expected least gap [-]. If it is small, the film is short circumferentially, and its pressure falls
+        closer to the edges.
     finest
-        Largest spacing of the rows at the edges over that of equal ones [-].
+        Largest spacing of the rows at the edges, relative to that of equally spaced rows [-].
     """
     inner = _inner_cells(edges[0], across) if edges else 0
     edge, rows = (edges[-1], across - inner + 1) if edges else (0.0, across + 1)
@@ -93,17 +94,17 @@ def supplied_mesh(
 
 
 def _towards_end(t: Array, fine: float) -> Array:
-    """Return places 0 … 1 whose spacing decreases to `fine` times that of equal ones."""
+    """Return places 0 … 1 whose spacing decreases to `fine` times the spacing of equally spaced ones."""
     return np.asarray(1 - (1 - t) * (fine + (1 - fine) * (1 - t)))
 
 
 def _inner_cells(edge: float, across: int) -> int:
-    """Return the number of cells from the middle to the first edge; three or more rows are left for land."""
+    """Return the number of cells from the middle to the first edge; the land keeps at least three rows."""
     return min(max(1, round(_DENSITY * edge * across)), max(1, across - 3))
 
 
 def _quadrature(zeta: Array, inner: int, edges: int) -> Array:
-    """Return weights that integrate an even parabola exactly across; the pressure has a kink at each edge."""
+    """Return axial weights that integrate an even parabola exactly; the pressure has a kink at each edge."""
     weights = np.zeros(zeta.size)
     first = inner if edges else zeta.size - 1
     if first == 1:
@@ -122,9 +123,9 @@ def _quadrature(zeta: Array, inner: int, edges: int) -> Array:
 
 
 def carried(mesh: Mesh, finer: Mesh, values: Array, end: Array) -> Array:
-    """Return values (n, m) of one mesh interpolated to the nodes of another.
+    """Interpolate values (n, m) of one mesh to the nodes of another.
 
-    `end` are the values at the bearing's end, (n,).
+    `end` contains the values at the bearing's end, (n,).
     """
     phi, finer_phi = (np.arange(one.order.size) * 2 * np.pi / one.order.size for one in (mesh, finer))
     around = [np.interp(finer_phi, phi, v, period=2 * np.pi) for v in (*values.T, end)]

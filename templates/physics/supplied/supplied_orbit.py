@@ -107,7 +107,7 @@ class Totals:
     """Mean flow of oil out of both ends, Q/(B D c Omega), c the radial clearance."""
 
     def change(self, before: "Totals") -> "Totals":
-        """Return the change to another mesh, relative to this one [-]."""
+        """Return the changes on another mesh, relative to the values on this one [-]."""
         pairs = zip(astuple(self), astuple(before), strict=True)
         return Totals(*(abs(old / new - 1) for new, old in pairs))
 
@@ -185,7 +185,7 @@ class SuppliedOrbit:
 
     @property
     def reason(self) -> str:
-        """Return a text on why the orbit does not repeat; empty if it does."""
+        """Return the reason why the orbit does not repeat; empty if it does."""
         if self.verdict is Verdict.REPEATING:
             return ""
         if self.verdict is Verdict.WANDERING:
@@ -259,7 +259,7 @@ def supplied_orbit(
 
 
 def _cells(gap: float, times: float = 1.0) -> int:
-    """Return `times` the number of circumferential cells that resolves a gap, in steps of 16."""
+    """Return `times` the number of circumferential cells that resolves a gap, rounded to steps of 16."""
     wanted = times * 2 * np.pi / (RESOLVED * np.sqrt(2 * max(gap, THINNEST)))
     return int(min(16 * np.ceil(wanted / 16), MOST_AROUND))
 
@@ -379,7 +379,10 @@ def _totals(duty: Duty, run: Run) -> Totals:
 
 
 def _verdict(run: Run, share: float) -> Verdict:
-    """Return how the last run ended; `share` is that fraction of the cycle with all pockets under load."""
+    """Return the outcome of the last run.
+
+    `share` is the fraction of the cycle in which all pockets are under load.
+    """
     if run.ending is RunOutcome.REPEATING:
         return Verdict.REPEATING
     if run.ending is RunOutcome.THINNING or (run.ending is RunOutcome.FAILED and share >= OFTEN):
@@ -389,11 +392,11 @@ def _verdict(run: Run, share: float) -> Verdict:
 
 
 def _flows(states: list[State]) -> tuple[float, float]:
-    """Return oil fed and oil lost over a cycle.
+    """Return the oil fed and the oil lost over a cycle.
 
     A BDF2 step stores a weighted mean of the flow at its end and the mean of the step before. The flows are
-    summed with the same weights, so that they are consistent with the marched oil content; the trapezoidal
-    rule differs by up to some per cent where the step size changes, as at an impact.
+    summed with the same weights, so that they are consistent with the oil content of the march; the
+    trapezoidal rule differs by some per cent where the step size changes, as at an impact.
     """
     fed, lost = (sum(state.step * state.flows[k] for state in states[1:]) for k in range(2))
     return float(fed), float(lost)

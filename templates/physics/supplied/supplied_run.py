@@ -70,7 +70,10 @@ class Run:
 
     @property
     def repeat_error(self) -> float:
-        """Return the change of the least gap in the last cycle, or the largest recent one if unrepeated."""
+        """Return the change of the least gap in the last cycle, or the largest recent change.
+
+        The largest recent change counts if the orbit does not repeat.
+        """
         if len(self.gaps) < 2:
             return np.inf
         return change(self.gaps, 1 if self.ending is RunOutcome.REPEATING else RECENT)
@@ -136,8 +139,8 @@ def thins(gaps: list[float]) -> bool:
     """Return whether the least gaps of all cycles on a mesh tend to zero, like 1/sqrt(n) or faster.
 
     A film that no oil enters is squeezed out: under a constant load its gap falls like 1/sqrt(n) with the
-    cycle n. A line in 1/sqrt(n) through the second half of the gaps then extrapolates to nearly zero; for an
-    orbit that converges it extrapolates to nearly its gap.
+    cycle n. A line in 1/sqrt(n) through the second half of the gaps then extrapolates to nearly zero. For an
+    orbit that converges it extrapolates to nearly the gap itself.
     """
     n = len(gaps)
     if n < EARLIEST:
@@ -155,7 +158,7 @@ def in_frame(duty: Duty, states: list[State]) -> tuple[Array, Array]:
 
 
 def least_gap(theta: Array, gap: Array, period: float) -> tuple[float, float]:
-    """Return the smallest gap of a cycle, by a parabola through three angles, and its angle.
+    """Return the smallest gap of a cycle and its angle, by a parabola through three angles.
 
     Parameters
     ----------

@@ -45,7 +45,7 @@ class Supply:
         if not self.pockets:
             raise ValueError("a supply needs at least one pocket")
         if not (0 < self.pressure < np.inf):
-            raise ValueError("the supply pressure must be above 0, that of the cavities")
+            raise ValueError("the supply pressure must be above 0, the pressure of the cavities")
         for pocket in self.pockets:
             if not 0 < pocket.half_angle <= np.pi:
                 raise ValueError("half_angle of a pocket must lie in (0, pi] rad")
@@ -54,7 +54,7 @@ class Supply:
 
     @property
     def grooved(self) -> bool:
-        """Return whether a pocket extends at least half around, and so passes through the loaded zone."""
+        """Return whether a pocket extends at least half around, so that the load passes over it."""
         return any(pocket.half_angle >= np.pi / 2 for pocket in self.pockets)
 
     @property

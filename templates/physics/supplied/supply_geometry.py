@@ -69,7 +69,7 @@ class SupplyGeometry:
 
     @property
     def count(self) -> Array:
-        """Return how many of the three inlets there are."""
+        """Return how many of the three inlets each point has."""
         return np.asarray(1.0 * self.grooved + self.sleeve_holed + self.pin_holed)[()]
 
     def partial(self) -> Mask:
@@ -77,7 +77,7 @@ class SupplyGeometry:
         return np.asarray(self.grooved & (self.groove_extent < AROUND))
 
     def parts(self) -> Iterator[tuple[Mask, Array, Array, Array, bool]]:
-        """Return, for each inlet: existence, middle, half extent [rad], length [m], whether in the pin."""
+        """Return for each inlet: existence, middle, half extent [rad], length [m], whether in the pin."""
         half = self.groove_extent / 2
         yield self.grooved, self.groove_start + half, half, self.groove_width, False
         yield self.sleeve_holed, self.sleeve_angle, self.sleeve_arc / self.D, self.sleeve_length, False
@@ -98,15 +98,15 @@ class SupplyGeometry:
 
 
 def _fitted(across: float) -> float:
-    """Return a length over the width, corrected if it exceeds its limit only by rounding."""
+    """Return a length relative to the width, corrected if it exceeds its limit only by rounding."""
     return LONGEST if LONGEST < across <= LONGEST * (1 + 1e-9) else across
 
 
 def supplies_of(feeding: SupplyGeometry, pressure: Array) -> NDArray[np.object_]:
     """Return the `Supply` of each point, (...).
 
-    It is None without inlets or without pressure P = p psi²/(eta Omega) [-], and if an inlet is too long,
-    which a rule refuses.
+    It is None if there are no inlets, if there is no pressure P = p psi²/(eta Omega) [-], or if an inlet is
+    too long, which a rule refuses.
     """
     sizes = (np.shape(getattr(feeding, field.name)) for field in fields(feeding))
     shape = np.broadcast_shapes(np.shape(pressure), *sizes)
@@ -157,9 +157,9 @@ def within_bearing(length: Array, W: Array, arc: Array, D: Array) -> Truth:
 
 @units(None, "rad/s", None, returns="1")
 def is_back(duty: Duty, speed: Array, needed: Mask) -> Truth:
-    """Return whether a part is back at its position in the load's frame after the cycle, where required.
+    """Return whether a part returns to its position in the load's frame after the cycle, if required.
 
-    The result is true for angles that do not cover a cycle, which another rule refuses.
+    The result is true for angles that do not cover a cycle, because another rule refuses them.
     """
     period = cycle_of(duty.angle)
     if not (np.any(needed) and np.isfinite(period)):
@@ -173,7 +173,7 @@ def is_back(duty: Duty, speed: Array, needed: Mask) -> Truth:
 def feed_under_load(duty: Duty, feeding: SupplyGeometry) -> Array:
     """Return the fraction of the cycle with every groove and hole within 60° of the load's direction [-].
 
-    It is NaN without any. A groove or slot longer than that is never completely under the load.
+    It is NaN if there are none. A groove or slot that extends beyond 60° is never completely under the load.
     """
     direction, sleeve, journal = _in_frame(duty)
     under, fed = np.ones(direction.shape, bool), np.zeros((), bool)

@@ -32,7 +32,7 @@ class Arc:
 
     @property
     def around(self) -> Array:
-        """Return the (n + 1,) circumferential lengths of the cells, half cells at the groove [rad]."""
+        """Return the (n + 1,) circumferential lengths of the cells, with half cells at the groove [rad]."""
         return dual_widths(self.phi)
 
     @property
@@ -51,7 +51,7 @@ def groove_arc(start: float, length: float, thin: tuple[float, float], ratio: fl
     length
         Angle from there to the other edge [rad].
     thin
-        Relative eccentricity [-] and angle [rad] of the narrowest gap, to which nodes are graded.
+        Relative eccentricity [-], and angle of the narrowest gap [rad], to which nodes are graded.
     ratio
         Width over diameter B/D [-].
     n

@@ -86,7 +86,7 @@ class PositionSearch:
     def _nearer(
         self, fluidity: Array, step: Array, size: float, tries: int
     ) -> tuple[Array, PressureSolution, Array] | None:
-        """Return the position after a step, halved until the residual decreases, and its film."""
+        """Return the position and its film after a step, which is halved until the residual decreases."""
         for _ in range(tries):
             y = self.y + step
             if np.hypot(*y) < FARTHEST:
@@ -106,7 +106,7 @@ class PositionSearch:
         return np.asarray(step * min(1.0, _LONGEST / size))
 
     def _film(self, fluidity: Array, y: Array) -> PressureSolution:
-        """Return the film at a position, stored as the initial guess of the next."""
+        """Return the film at a position; it is stored as the initial guess of the next one."""
         gap: Gap = gap_of(self.arc, y, fluidity, self.edges, self.feed)
         try:
             film = pressed(gap, self.near)

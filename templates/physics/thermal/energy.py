@@ -74,7 +74,7 @@ class FilmHeat:
 
     @property
     def residual(self) -> float:
-        """Return the error of the heat balance over the dissipation [-]."""
+        """Return the error of the heat balance relative to the dissipation [-]."""
         away = self.by_side + self.by_drain + self.by_bush + self.by_journal
         return (self.dissipated - away) / self.dissipated
 
@@ -116,7 +116,7 @@ def carried(film: PressureSolution) -> StripFlows:
 
 
 def _inner(values: Array) -> Array:
-    """Return the values of the inner nodes; those at the groove are added to their neighbours."""
+    """Return the values of the inner nodes, to which those at the groove are added."""
     inner = values[1:-1].copy()
     inner[0] += values[0]
     inner[-1] += values[-1]
@@ -187,7 +187,7 @@ class _System:
             kept.append(part.ravel())
 
     def flows(self, giver: Array | int, taker: Array | int, flow: Array) -> None:
-        """Add the heat that oil transports from one unknown to another, as a loss of the first."""
+        """Add the heat that oil carries from one unknown to another, as a loss of the first one."""
         self.add(giver, giver, flow)
         self.add(taker, giver, -flow)
 

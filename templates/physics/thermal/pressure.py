@@ -52,7 +52,7 @@ class Gap:
         return float(np.arctan2(self.y[1], self.y[0]))
 
     def H(self, phi: Array) -> Array:
-        """Return the gap over radial clearance, without cancellation where it is narrow [-]."""
+        """Return the gap relative to the radial clearance, without cancellation where it is narrow [-]."""
         return (1 - self.eps) + 2 * self.eps * np.sin((phi - self.attitude) / 2) ** 2
 
     @property
@@ -121,7 +121,7 @@ class PressureSolution:
 
 
 def pressed(gap: Gap, start: tuple[Array, Array] | None = None) -> PressureSolution:
-    """Return the solution for pressure and void, started from those (n + 1, m + 1) of a nearby film.
+    """Return the solution for pressure and void, starting from the (n + 1, m + 1) values of a nearby film.
 
     Raises
     ------

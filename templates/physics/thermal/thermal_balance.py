@@ -53,7 +53,7 @@ class Bearing:
     """Function that returns the viscosity at supply over the viscosity at a temperature [K]."""
 
     def arc(self, y: Array, mesh: tuple[int, int, int]) -> Arc:
-        """Return the film's mesh, graded to a position of the journal."""
+        """Return the mesh of the film, graded to a position of the journal."""
         centre, width, _ = self.groove
         eps, attitude = float(np.tanh(np.hypot(*y))), float(np.arctan2(y[1], y[0]))
         return groove_arc(
@@ -61,15 +61,15 @@ class Bearing:
         )
 
     def placing(self, y: Array, mesh: tuple[int, int, int]) -> PositionSearch:
-        """Return a search on a mesh that starts from a position."""
+        """Return a position search on a mesh, starting from a given position."""
         return PositionSearch(
             self.arc(y, mesh), strip_edges(mesh[2]), self.So, (self.pressure, self.groove[2]), y
         )
 
     def start(self) -> Array:
-        """Return the journal's position for a film of the supply's viscosity, fed along its widest gap."""
+        """Return the journal's position for a film at the supply viscosity, fed along its widest gap."""
         if not np.isfinite(self.So):
-            raise NoBalance("the oil has no viscosity that supports a load")
+            raise NoBalance("the oil is not viscous enough to support a load")
         eps = mapped_eccentricity(np.asarray(self.So), np.asarray(self.ratio))
         eps = np.clip(np.where(np.isnan(eps), _HEAVIEST, eps), _LIGHTEST, _HEAVIEST)
         attitude = mapped_film(eps, np.asarray(self.ratio))["attitude"]
@@ -167,9 +167,9 @@ def warm(bearing: Bearing, placing: PositionSearch, T: Array) -> Warm:
 
 
 def both(bearing: Bearing, level: str) -> tuple[OneTemperature, tuple[Warm, Warm]]:
-    """Return the film of one temperature on the level's mesh, and the film with a temperature field.
+    """Return the film with one temperature on the level's mesh, and the film with a temperature field.
 
-    The temperature field is solved on the preceding mesh and on the level's mesh.
+    The temperature field is solved on the next coarser mesh and on the level's mesh.
 
     Raises
     ------
@@ -189,7 +189,7 @@ def both(bearing: Bearing, level: str) -> tuple[OneTemperature, tuple[Warm, Warm
 
 
 def _carried_over(coarse: Warm, finer: PositionSearch) -> Array:
-    """Return the temperatures of one mesh interpolated to the nodes and strips of another."""
+    """Interpolate the temperatures of one mesh to the nodes and strips of another."""
     T, arc = coarse.heated.T, coarse.placing.arc
     middle, new = (((edges[1:] + edges[:-1]) / 2) for edges in (coarse.placing.edges, finer.edges))
     columns = np.stack([np.interp(finer.arc.phi, arc.phi, strip) for strip in T.T], axis=1)

@@ -76,7 +76,7 @@ class ThermalCase(ViscousOil):
         )  # fmt: skip
 
     def _thinner(self, eta: float) -> Callable[[Array], Array]:
-        """Return a viscosity [Pa s] over that at a temperature [K]; 0 where the oil is practically solid."""
+        """Return a viscosity [Pa s] over that at a temperature [K]; 0 where the oil is almost solid."""
 
         def fluidity(T: Array) -> Array:
             with np.errstate(over="ignore"):

@@ -143,7 +143,7 @@ def _above_rounding(value: float, size: float) -> float:
 
 
 def _around(warm: Warm) -> Array:
-    """Return the temperature of the bush's surface at `ANGLES`; in the groove, that of the oil."""
+    """Return the temperature of the bush's surface at `ANGLES`; within the groove, that of the oil."""
     phi = warm.placing.arc.phi
     return np.interp(
         phi[0] + (ANGLES - phi[0]) % (2 * np.pi), phi, warm.heated.bush, right=warm.heated.groove

@@ -26,13 +26,13 @@ def train_of(
     excited: Array,
     propeller: Propeller | None,
 ) -> Train:
-    """Return the train of a layout that satisfies the rules."""
+    """Return the train with a layout that satisfies the rules."""
     assert layout is not None
     return Train(layout, J, k, c, eta, absolute, propeller, int(numbered(excited)[0]))
 
 
 def propeller_of(number: Array, torque: Array, speed: Array, factor: Array) -> Propeller | None:
-    """Return the propeller on the inertia of that number; None if none is given."""
+    """Return the propeller on the inertia with a given number; None if no propeller is given."""
     return None if np.isnan(number) else Propeller(int(number) - 1, torque, speed, factor)
 
 

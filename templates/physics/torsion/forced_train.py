@@ -121,7 +121,7 @@ def _solved(matrix: Phasors, w: Array, mass: Array, right: Phasors) -> Phasors:
 
 
 def _nudged(matrix: Phasors, loads: Phasors) -> Phasors:
-    """Return the solutions; singular matrices are perturbed, so theirs are very large; NaN on failure."""
+    """Return the solutions; those of singular matrices are perturbed and very large; NaN on failure."""
     try:
         return np.asarray(np.linalg.solve(matrix + 1j * _NUDGE * np.eye(matrix.shape[-1]), loads)[..., 0])
     except np.linalg.LinAlgError:
@@ -158,7 +158,7 @@ class Response:
 
     @cached_property
     def apparent_power(self) -> Array:
-        """Return the power input with all angles shifted by a quarter period [W], (…, V), as a reference."""
+        """Return the power input with all angles shifted by a quarter period [W], (…, V), for reference."""
         return (self.frequency * (np.abs(self.angles) * np.abs(self.torque)).sum(axis=-1)).sum(axis=-1) / 2
 
     @cached_property

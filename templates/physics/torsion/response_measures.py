@@ -17,7 +17,7 @@ SUMMED = "solved numerically by one linear system for each speed and order, and 
 
 
 def _across(values: Array) -> Array:
-    """Return (…, speed, member) as (…, member, speed)."""
+    """Return an array (…, speed, member) with its last two axes exchanged."""
     return np.asarray(np.swapaxes(values, -1, -2))
 
 
@@ -149,9 +149,9 @@ def power_lost(shafts: Array, inertias: Array) -> Array:
     latex=r"\max_{{n}}\frac{{\left|{0}-{1}\right|}}{{\tfrac12\sum h\omega\left|\Phi T\right|}}",
 )
 def power_error(put_in: Array, lost: Array, response: Response) -> Array:
-    """Return the largest difference of input and dissipation over apparent power, of all speeds, (…).
+    """Return the largest difference between input and dissipation over all speeds, (…).
 
-    Values below 1e-12 are returned as 0.
+    It is relative to the apparent power. Values below 1e-12 are returned as 0.
     """
     size = response.apparent_power
     error = (np.abs(put_in - lost) / np.where(size == 0, 1, size)).max(axis=-1)
@@ -168,7 +168,7 @@ def speed_spectrum(response: Response, number: Array) -> Array:
     None, "1", "rad/s", returns="1", latex=r"\frac{{\omega_{{max}}-\omega_{{min}}}}{{\overline{{\omega}}}}"
 )
 def irregularity(response: Response, number: Array, speeds: Array) -> Array:
-    """Return the range of angular speed over its mean for one inertia, numbered from 1, (…, V)."""
+    """Return the range of the angular speed of one inertia, numbered from 1, relative to its mean, (…, V)."""
     at = int(number) - 1
     layout = response.train.layout
     mean = np.abs(np.asarray(speeds) * layout.speeds[at] / layout.speeds[response.train.crank])

@@ -76,7 +76,7 @@ def is_one_cycle(theta: Array) -> bool:
 
 @units("rad", "N*m", returns="1")
 def closes(theta: Array, T: Array) -> bool:
-    """Return whether a last point that repeats the first angle repeats its torque [N m], [..., angle]."""
+    """Return whether a last angle that closes the cycle has the first torque [N m], [..., angle]."""
     cycle = cycle_of(theta)
     if cycle is None or np.ndim(T) == 0 or np.shape(T)[-1] != cycle.count + 1:
         return True
@@ -124,7 +124,7 @@ def half_swing(amplitudes: Phasors) -> Array:
     """Return half the range of Re Σ c e^{ikx}, k = 1 … H, over the cycle, (…), from c (…, H).
 
     The curve is sampled at least sixteen times in each period of its highest order. Parabolas through the
-    samples rank its peaks, and Newton's method finds the largest and the smallest value.
+    samples rank its peaks, and Newton's method then finds the largest and the smallest value.
     """
     lines = amplitudes.shape[-1]
     if lines == 1:
@@ -160,7 +160,7 @@ def _extreme(amplitudes: Phasors, curve: Array) -> Array:
 
 
 def _tops(curve: Array, low: Array) -> Integers:
-    """Return the index of the sample at the highest peak of each curve, (R,); parabolas estimate peaks.
+    """Return the index of the sample at the highest peak of each curve, (R,), estimated by parabolas.
 
     No peak is more than `low` above its sample.
     """
@@ -181,7 +181,7 @@ def _tops(curve: Array, low: Array) -> Integers:
 
 @units("rad", "1", returns="1", latex=r"\frac{{2 j}}{{z}}\le {1}")
 def orders_of(theta: Array, highest: Array) -> Array:
-    """Return the orders up to the highest, (H,): whole ones for two strokes, half orders too for four."""
+    """Return the orders up to the highest, (H,): whole ones for two strokes, also half ones for four."""
     cycle = cycle_of(theta)
     assert cycle is not None  # a rule refuses others
     return np.arange(1, _lines(cycle, highest) + 1) * 2 / cycle.strokes

@@ -21,12 +21,12 @@ _SAME = 1e-9  # relative difference below which mean speeds are equal
 
 
 def listed(values: Array) -> Array:
-    """Return a list as given, in its unit; empty if it is not given."""
+    """Return a list as given, in its unit; an empty list if none is given."""
     return np.zeros(0) if np.ndim(values) == 0 else np.asarray(values)
 
 
 def numbered(values: Array) -> Integers:
-    """Return numbers from 1 as indices from 0; ground is −1."""
+    """Convert numbers counted from 1 to indices counted from 0; ground is −1."""
     return np.asarray(listed(values), dtype=np.int64) - 1
 
 
@@ -66,7 +66,7 @@ class TrainLayout:
 
     @cached_property
     def speeds(self) -> Array:
-        """Return the mean speed of each inertia over that of the first, (n,); NaN if it is not connected."""
+        """Return the mean speed of each inertia relative to the first, (n,); NaN if it is not connected."""
         joined: defaultdict[int, list[tuple[int, float]]] = defaultdict(list)
         for (first, second), ratio in self._turning():
             joined[first].append((second, ratio))
@@ -112,7 +112,7 @@ class TrainLayout:
         return list(zip(pairs, self.ratios.tolist(), strict=True))
 
     def _turning(self) -> list[tuple[tuple[int, int], float]]:
-        """Return the connections between inertias by shafts and gears."""
+        """Return the connections between inertias that shafts and gears make."""
         shafts = [((int(i), int(j)), 1.0) for i, j in self.shafts if j != GROUND]
         return [*shafts, *self._driven()]
 
@@ -157,7 +157,7 @@ def are_pairs(first: Array, second: Array) -> bool:
 
 @units("kg*m**2", "1", "1", returns="1")
 def name_inertias(J: Array, first: Array, second: Array) -> bool:
-    """Return whether two lists of numbers name existing inertias, never the same one twice in a pair."""
+    """Return whether two lists of numbers name existing inertias, and no pair names the same one twice."""
     one, other = listed(first), listed(second)
     count = np.shape(J)[-1]
     exist = np.all(one <= count) and np.all(other <= count)

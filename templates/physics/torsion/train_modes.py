@@ -58,7 +58,7 @@ def mode_shapes(train: Train) -> Array:
 def _own_basis(vectors: Array) -> Array:
     """Return a basis of the same space (m, q) that does not depend on how the space was calculated.
 
-    The first angle determines the first vector.
+    It is chosen so that the first angle determines the first vector.
     """
     projector, basis = vectors.T @ vectors, np.zeros((0, vectors.shape[-1]))
     for column in projector:

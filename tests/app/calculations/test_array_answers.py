@@ -74,7 +74,7 @@ def test_a_point_without_a_value_is_refused_with_its_reason(http):
 
 def test_outputs_of_two_shapes_are_refused_by_name():
     outputs = {"load": Answer(np.ones(3), "N"), "speed": Answer(1.0, "rpm"), "curve": Answer(np.ones(5), "N")}
-    with pytest.raises(NoArray, match=r"load has the shape \(3,\) and curve has \(5,\)"):
+    with pytest.raises(NoArray, match=r"load has the shape \(3,\), but curve has \(5,\)"):
         npy(SimpleNamespace(outputs=outputs))
 
 

@@ -226,7 +226,7 @@ def test_too_many_streams_of_one_client(slow):
             assert one.is_success
             assert two.is_success
             refused = http.get(watched)
-            assert "2 streams" in problem(refused, 429, "too-many-streams")["detail"]
+            assert "at most 2 event streams" in problem(refused, 429, "too-many-streams")["detail"]
             assert refused.headers["retry-after"]
             other = {"Crankwright-Client": "other"}
             with http.stream("GET", watched, headers=other) as third:

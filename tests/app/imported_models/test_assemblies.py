@@ -7,7 +7,7 @@ from math import pi, sqrt
 import pytest
 from cadquery import Location, Vector, Workplane
 from freecad_files import ended, imported, post
-from serving import API, created, faults, paper, patched
+from serving import API, created, faults, paper, patched, revision
 
 from app.imported_models.assemblies import AssemblyFiles
 from app.maintenance.rows import SENT
@@ -146,9 +146,41 @@ def test_an_interference_is_refused_by_names_and_volume(http, assembly):
     problem = design["problem"]
     assert problem["status"] == 422
     assert f"cap and bolt overlap by {pi * RADIUS**2 * 5:.6g} mm³" in problem["detail"]
+    assert named(problem) == ["model.bolt_x", "model.bolt_y", "model.bolt_z"]
     moved = patched(http, design, {"model": {"parameters": {"bolt_z": "0 mm"}}})
     assert moved["state"] == "current"
     assert between(measured(http, moved), "cap", "bolt") == 0
+
+
+def test_an_interference_names_what_changed_since_the_last_good_model(http, assembly):
+    """By a parameter of the fixed part, and by one of the part that it meets."""
+    design = design_with(http, bolt_z="1 mm", bolt_y="0.5 mm")
+    turned = patched(http, design, {"model": {"parameters": {"bolt_turn_z": "30 deg", "bolt_z": "-5 mm"}}})
+    assert turned["state"] == "failed"
+    assert set(named(turned["problem"])) == {"model.bolt_turn_z", "model.bolt_z"}
+    assert "Changed since the last good model: " in turned["problem"]["detail"]
+    asked = {"bolt_turn_z": None, "bolt_z": "1 mm", "cap_height": "50 mm"}
+    assert patched(http, turned, {"model": {"parameters": asked}})["state"] == "current"
+
+
+@pytest.mark.slow
+def test_an_interference_by_a_change_of_the_base_names_that_change(http, bolt):
+    beside = {"name": "bolt", "model": "m8_bolt", "datum": "origin", "x": "60 mm"}
+    brought(http, "bolt_beside", manifest(beside))
+    model = {"id": "bolt_beside", "version": 1, "parameters": {"journal_diameter": "48 mm"}}
+    design = created(http, {"name": "beside", "model": model})
+    assert design["state"] == "current"
+    wider = patched(http, design, {"model": {"parameters": {"housing_breadth": "118 mm"}}})
+    assert wider["state"] == "failed"
+    assert named(wider["problem"]) == ["model.housing_breadth"]
+    asked = {"housing_breadth": None, "journal_diameter": "54 mm"}
+    thicker = patched(http, wider, {"model": {"parameters": asked}})
+    assert named(thicker["problem"]) == ["model.journal_diameter"]
+
+
+def named(problem):
+    """The parameters beside which the page shows a problem."""
+    return [one["name"] for one in problem["errors"]]
 
 
 @pytest.mark.slow
@@ -241,7 +273,7 @@ def test_a_component_that_makes_no_sense_is_refused_by_name(http, bolt, componen
         (manifest(*[below(name=f"b{n}") for n in range(31)]), "at most 30"),
         (manifest(), "at least 1"),
         (manifest(below(), base="no_such"), "no_such"),
-        (manifest(below(), base="m8_bolt"), "is no model of this program"),
+        (manifest(below(), base="m8_bolt"), "is not a model of this program"),
         ({**manifest(below()), "more": 1}, "more"),
         (manifest(below(name="origin")), "`origin` is the name of a datum"),
     ],
@@ -309,3 +341,18 @@ def test_a_clearance_askew_is_that_of_geometry():
     (two,) = clearances([near, inside], lambda name: name)
     assert two.overlap == pytest.approx(4 / 3 * pi, rel=1e-6)
     assert not list(clearances([near, far], lambda name: None))
+
+
+def test_a_toleranced_place_of_a_step_part_is_stated_in_the_table(http, assembly):
+    given = {"journal_diameter": "48 mm h6", "bolt_z": "1.25 ± 0.2 mm"}
+    document = {"name": "bolted", "models": {"bearing": {"id": "bolted_bearing", "parameters": given}}}
+    assert faults(http.post(f"{API}/designs", json=document)) == {"bearing.bolt_z": "tolerance_not_stated"}
+    given["bolt_z"] += ", in table"
+    design = created(http, document)
+    assert design["state"] == "current", design["problem"]
+    stated = revision(http, design)["models"]["bearing"]["tolerances"]
+    assert {name: (one["where"], one["drawing"]) for name, one in stated.items()} == {
+        "bolt_z": ("table", "table"),
+        "journal_diameter": ("faces", "table"),
+    }
+    assert "built-in models only" in stated["journal_diameter"]["detail"]

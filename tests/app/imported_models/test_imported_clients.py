@@ -86,7 +86,7 @@ def test_the_command_says_why_a_file_is_not_taken(served, tmp_path):
     file.write_bytes(b"solid stl")
     done = run(served, "import", file, "--id", "no_part")
     assert done.exit_code == 1
-    assert "send a .FCStd of FreeCAD, a STEP file" in done.output
+    assert "send a FreeCAD file (.FCStd), a STEP file" in done.output
     taken = tmp_path / "washer.stp"
     taken.write_bytes(b"ISO-10303-21;")
     assert "ball_bearing" in run(served, "import", taken, "--id", "ball_bearing").output

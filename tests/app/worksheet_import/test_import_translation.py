@@ -267,7 +267,7 @@ def test_a_global_definition_counts_above_itself():
         (tag("imag", ""), "complex number"),
         (call("eigenvals", name("x")), "matrix function"),
         (constant("∞"), "infinity"),
-        (tag("if", tag("test", real(1)), tag("then", real(1))), "the condition has no otherwise"),
+        (tag("if", tag("test", real(1)), tag("then", real(1))), "the condition has no `otherwise` branch"),
         (apply("plus", name("x"), real(1)), "the worksheet language refuses the formula"),
         (name("nothing"), "name nothing that nothing above defines"),
         (tag("unheard"), "construct unheard"),

@@ -81,17 +81,21 @@ def test_a_part_that_yields_warns_whatever_its_life():
     assert "yields" not in codes(answer("fatigue_life"))
 
 
-def test_grooves_of_several_widths_are_answered_each():
+@pytest.mark.parametrize(
+    ("name", "values", "unit"),
+    [
+        ("groove_width", [2.0, 3.0], "mm"),
+        pytest.param("groove_start", [-90.0, -60.0], "deg", marks=pytest.mark.slow),
+        pytest.param("groove_extent", [120.0, 180.0], "deg", marks=pytest.mark.slow),
+    ],
+)
+def test_grooves_of_several_sizes_are_answered_each(name, values, unit):
     """And so is every other size of the feeding that is a list."""
-    for name, values, unit in (
-        ("groove_width", [2.0, 3.0], "mm"), ("groove_start", [-90.0, -60.0], "deg"),
-        ("groove_extent", [120.0, 180.0], "deg"),
-    ):  # fmt: skip
-        many = answer("cycle_heat_balance", **{name: {"value": values, "unit": unit}}).outputs
-        for k, value in enumerate(values):
-            alone = answer("cycle_heat_balance", **{name: f"{value} {unit}"}).outputs
-            for output in ("film_temperature", "minimum_film_thickness", "feed_flow"):
-                assert many[output].value[k] == pytest.approx(alone[output].value, rel=1e-6), (name, output)
+    many = answer("cycle_heat_balance", **{name: {"value": values, "unit": unit}}).outputs
+    for k, value in enumerate(values):
+        alone = answer("cycle_heat_balance", **{name: f"{value} {unit}"}).outputs
+        for output in ("film_temperature", "minimum_film_thickness", "feed_flow"):
+            assert many[output].value[k] == pytest.approx(alone[output].value, rel=1e-6), (name, output)
 
 
 @pytest.mark.parametrize("level", ["mobility_grooved", pytest.param("supplied", marks=pytest.mark.slow)])

@@ -33,7 +33,7 @@ def test_a_file_of_freecad_is_brought_by_a_form_alone(plain):
 def test_a_file_that_is_not_taken_is_explained_beside_the_form(plain):
     plain.open("/models/import")
     sent(plain.page, "wrong", b"no model", "wrong.txt")
-    expect(plain.page.get_by_role("alert")).to_contain_text("send a .FCStd of FreeCAD")
+    expect(plain.page.get_by_role("alert")).to_contain_text("send a FreeCAD file (.FCStd)")
     expect(plain.page.get_by_label("Name", exact=True)).to_have_value("wrong")
 
 

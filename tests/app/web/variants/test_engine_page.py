@@ -33,9 +33,11 @@ def test_every_bearing_of_the_engine_is_decided_on_its_page(watched, http):
     assert design["state"] == "current", design.get("problem") or design.get("errors") or design
     page = watched.page
     watched.open(place, timeout=LONG)
-    rows = page.locator("table.variants tbody tr[id^=variant-]:not(#variant-base)")
-    expect(rows).to_have_count(9, timeout=LONG)
-    names = page.locator("table.variants thead th.criterion").all_text_contents()
+    expect(page.locator("[data-result]")).to_have_count(10, timeout=LONG)
+    page.get_by_text("Every criterion of every variant").click()
+    rows = page.locator(".all-criteria tbody tr:not(.base)")
+    expect(rows).to_have_count(9)
+    names = page.locator(".all-criteria thead th.criterion").all_text_contents()
     titles = [one.get_attribute("title") for one in page.locator("main [title]").all()]
     texts = [line for line in page.locator("main").inner_text().splitlines() if line.strip()]
     film = [name.strip().lower() for name in names].index("film: minimum film thickness")
