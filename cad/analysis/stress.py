@@ -4,8 +4,8 @@ The mesh is refined where the stress is high. Elements of second order find the 
 quarter of the cost of the third. From the third mesh on, once a refinement changes the stress little, third
 order confirms it on the same mesh. The stress has converged if the confirmed value is nearly that of second
 order, or nearly that confirmed on a mesh before. A single small change may be a coincidence, so both the
-refinement and one of these changes must be small. The compared stress is recovered: polynomials of neighbouring
-elements are averaged where they meet (Zienkiewicz and Zhu 1992). At a sharp inner corner the stress is
+refinement and one of these changes must be small. The compared stress is recovered: polynomials of
+neighbouring elements are averaged where they meet (Zienkiewicz and Zhu 1992). At a sharp inner corner it is
 unbounded and each refinement raises it by a quarter, so the analysis gives no value, and names the corner as
 the reason. The search omits the regions near the ends, where the idealised clamp or load disturbs the field
 (de Saint-Venant's principle). If a fillet or a web begins closer to an end, the search begins there.
