@@ -40,6 +40,7 @@ OF_NONE = {
     "relief_height",
     "flange_thickness",
     "free_spread",
+    "reduction_height",
     "oil_groove_angle",
 }
 """Sizes of features that a bare shell has not; its groove goes from joint to joint."""
