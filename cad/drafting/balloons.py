@@ -12,21 +12,26 @@ from cad.step import Body
 _MOST = 24  # parts of a sheet that get balloons
 
 
-def balloons(section: View, bodies: Sequence[Body]) -> Iterator[tuple[int, Point]]:
-    """Yield the number of each part in the parts list, and a point on that part in the section."""
+def balloons(section: View, end: View, bodies: Sequence[Body]) -> Iterator[tuple[int, View, Point]]:
+    """Yield the number of each part in the parts list, and a point on that part in a view that shows it."""
     if not 1 < len(bodies) <= _MOST:
         return
-    for number, body in enumerate(bodies):
-        yield number + 1, _on_cut(section, number) or _within(section, body)
+    for part, body in enumerate(bodies):
+        if (point := _on_cut(section, part)) is not None:
+            yield part + 1, section, point
+        elif (point := _on_cut(end, part) or _in_break(end, body)) is not None:
+            yield part + 1, end, point
+        else:
+            yield part + 1, section, _middles(section, body)[0]
 
 
-def _on_cut(section: View, part: int) -> Point | None:
+def _on_cut(view: View, part: int) -> Point | None:
     """Return a point on the largest cut face of a part.
 
-    The point is the centroid of the face if it lies within the face, otherwise the middle of the longest
-    side.
+    The point is the centroid of the face if it lies within the face, otherwise the point in its material that
+    is opposite to the middle of its longest side.
     """
-    outlines = [[(x, y) for x, y, _ in cut.outlines[0]] for cut in section.cut if cut.part == part]
+    outlines = [[(x, y) for x, y, _ in cut.outlines[0]] for cut in view.cut if cut.part == part]
     if not outlines:
         return None
     line = max(outlines, key=lambda one: abs(_area(one)))
@@ -36,7 +41,24 @@ def _on_cut(section: View, part: int) -> Point | None:
     if _is_inside(middle, sides):
         return middle[0], middle[1]
     (x, y), (u, v) = max(sides, key=lambda side: round(dist(*side), 4))
-    return (x + u) / 2, (y + v) / 2
+    return _across((x + u) / 2, (y + v) / 2, (u - x, v - y), sides)
+
+
+def _across(x: float, y: float, along: Point, sides: Sequence[tuple[Point, Point]]) -> Point:
+    """Return the middle of the line across a polygon that starts on a side, square to that side."""
+    size = dist(along, (0.0, 0.0))
+    for a, b in ((-along[1] / size, along[0] / size), (along[1] / size, -along[0] / size)):
+        if not _is_inside((x + 1e-3 * a, y + 1e-3 * b), sides):
+            continue
+        reaches = [
+            ((p - x) * (s - q) - (q - y) * (r - p)) / (a * (s - q) - b * (r - p))
+            for (p, q), (r, s) in sides
+            if (a * (q - y) - b * (p - x)) * (a * (s - y) - b * (r - x)) <= 0.0
+            and abs(a * (s - q) - b * (r - p)) > 1e-9
+        ]
+        half = min(reach for reach in reaches if reach > 1e-4) / 2
+        return x + a * half, y + b * half
+    return x, y
 
 
 def _area(line: Sequence[Point]) -> float:
@@ -51,7 +73,17 @@ def _is_inside(point: Sequence[float], sides: Sequence[tuple[Point, Point]]) -> 
     return sum(a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) > x for a, b in over) % 2 == 1
 
 
-def _within(section: View, body: Body) -> Point:
-    """Return the centre of the bounding box of a part that the section does not cut."""
-    middle = body.shape.moved(body.places[0]).BoundingBox().center
-    return section.frame.flat(middle)
+def _in_break(view: View, body: Body) -> Point | None:
+    """Return the middle of a part that is in a broken-out section of a view."""
+    corners = [point for curve in view.broken for point in curve.points]
+    if not corners:
+        return None
+    low, high = (tuple(pick(point[n] for point in corners) for n in (0, 1)) for pick in (min, max))
+    inside = (m for m in _middles(view, body) if all(low[n] < m[n] < high[n] for n in (0, 1)))
+    return next(inside, None)
+
+
+def _middles(view: View, body: Body) -> list[Point]:
+    """Return the centres of the bounding boxes of a part at all its places."""
+    boxes = (body.shape.moved(place).BoundingBox() for place in body.places)
+    return [view.frame.flat(box.center) for box in boxes]

@@ -29,6 +29,7 @@ EXTENSION = 1.5  # of an extension line beyond its dimension line [mm on paper]
 _ARROWS = 7.0  # shortest dimension line with its arrows within [mm on paper]
 _NARROW = radians(15)  # angle whose words stand beside it
 _TAIL = 6.5  # of a line with its arrows outside [mm on paper]
+_BEYOND = (1.5, 4.5, 7.5, 10.5)  # from an end of a dimension line to a text beyond it [mm on paper]
 _FIRST = 10.0  # from the view to its first dimension line [mm on paper]
 _MOST_LANES = 40
 _STEMS = range(2, 40, 3)  # lengths of a datum's stem that are tried [mm on paper]
@@ -145,15 +146,15 @@ class DimensionLayout:
     def _in_lanes(self, lane: Lane) -> Iterator[PlacedDimension]:
         right = self.plan.beside if lane.is_of_end else 0.0
         ends = [sorted(p[lane.along] for p in self._on_paper(one, right)) for one in lane.dimensions]
+        others = [end for pair in ends for end in pair]
         for one, (low, high) in zip(lane.dimensions, ends, strict=True):
             label = label_of(one)
-            others = [end for pair in ends for end in pair]
             middle = _middle(low, high, label.width(TEXT), others)
             for number in range(_MOST_LANES):
                 away = lane.edge + lane.out * (_FIRST + LANE * number) / self.plan.scale
                 place = self.plan.paper((away, away), right)[1 - lane.along]
                 box = self._box_in_lane(label, lane.along, place, (low, high), middle)
-                stem = self._stem(lane.along, place, (low, high), box) if one.name in self.datums else None
+                stem = self._stem(lane, place, (low, high), box, others) if one.name in self.datums else None
                 if self.room.is_clear(box, 0.1) and (stem or one.name not in self.datums):
                     break
             else:
@@ -162,12 +163,17 @@ class DimensionLayout:
             laned = self._laned(one, label, lane.along, place, (low, high), middle, right)
             yield self._with_datum(laned, stem) if stem else laned
 
-    def _stem(self, along: int, place: float, ends: tuple[float, float], own: Rectangle) -> DatumPlace | None:
-        """Return a free place for a datum in line with a dimension line."""
+    def _stem(
+        self, lane: Lane, place: float, ends: tuple[float, float], own: Rectangle, others: Sequence[float]
+    ) -> DatumPlace | None:
+        """Return a free place for a datum in line with a dimension line, between other extension lines."""
+        along = lane.along
         starts = (ends[1], pi / 2 * along), (ends[0], pi / 2 * along + pi)
         for reach, (end, turn) in product(_STEMS, starts):
             one = DatumPlace.at((place, end) if along else (end, place), turn, reach)
-            if not overlap(one.box, own) and self.room.is_free(one.box) and self.room.passes(one.stem):
+            if overlap(one.box, own) or _crossings(one.box[along], one.box[along + 2], others):
+                continue
+            if self.room.is_free(one.box) and self.room.passes(one.stem):
                 return one
         return None
 
@@ -359,16 +365,23 @@ def _polar(corner: Point, radius: float, turn: float) -> Point:
     return corner[0] + radius * cos(turn), corner[1] + radius * sin(turn)
 
 
-def _middle(low: float, high: float, width: float, others: list[float]) -> float:
-    """Return the centre of a text along its dimension line: between the ends, or beyond one end."""
+def _middle(low: float, high: float, width: float, others: Sequence[float]) -> float:
+    """Return the centre of a text along its dimension line: between the ends, or beyond one end.
+
+    It is the nearest place at which the fewest extension lines, at `others`, cross the text.
+    """
     half = width / 2
     if width + 1.0 <= high - low:
         middle, spare = (low + high) / 2, (high - low - width) / 2 - 0.5
-        beside = [middle, *(middle + share * spare for share in (0.5, -0.5, 1.0, -1.0))]
-        return next((at for at in beside if not any(at - half < end < at + half for end in others)), middle)
-    tail = 1.5
-    tries = [high + tail + half, low - tail - half]
-    return min(tries, key=lambda at: sum(at - half < end < at + half for end in others))
+        tries = [middle + share * spare for share in (0.0, 0.5, -0.5, 1.0, -1.0)]
+    else:
+        tries = [at for beyond in _BEYOND for at in (high + beyond + half, low - beyond - half)]
+    return min(tries, key=lambda at: _crossings(at - half, at + half, others))
+
+
+def _crossings(low: float, high: float, others: Sequence[float]) -> int:
+    """Return how many extension lines are within a range."""
+    return sum(low < end < high for end in others)
 
 
 def _nearest(lines: list[list[Point]]) -> list[list[Point]]:

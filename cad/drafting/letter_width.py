@@ -1,7 +1,7 @@
 """Upper bounds of text widths over the fonts in which browsers and typesetters show a drawing.
 
-The widths are those of DejaVu Sans, which is wider than Inter, Liberation Sans and Arial. The ISO lettering
-of CAD programs is narrower than all of them.
+The widths are those of DejaVu Sans, or of Arial and Liberation Sans for the capitals that are wider there.
+The ISO lettering of CAD programs is narrower than all of them.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ SIZE = 1.3
 """Size of a font whose letters have height 1; a font's size is that of its line."""
 
 _WIDTHS = {
-    275: "'", 278: "ijl", 295: "IJ", 318: " ,.", 337: "/:;\\|", 352: "f", 361: "-", 390: "()[]", 392: "t",
-    401: "!°³²", 411: "r", 460: '"', 500: "*_`–", 521: "s", 525: "z", 531: "?", 550: "c", 557: "L", 575: "F",
-    579: "k", 592: "vxy", 603: "P", 611: "TY", 612: "o", 613: "a", 615: "e", 632: "E", 634: "hnu",
-    635: "Sbdgpq", 637: "$0123456789{}µ", 656: "K", 684: "AV", 685: "XZ", 686: "B", 695: "R", 698: "C",
-    732: "U", 748: "N", 752: "H", 770: "D", 775: "G", 780: "&", 788: "OQØ", 818: "w", 838: "#+<=>^~×±",
-    863: "M", 950: "%", 974: "m", 989: "W", 1000: "@…",
+    275: "'", 278: "ijl", 295: "I", 318: " ,.", 337: "/:;\\|", 352: "f", 361: "-", 390: "()[]", 392: "t",
+    401: "!°³²", 411: "r", 460: '"', 500: "*_`–J", 521: "s", 525: "z", 531: "?", 550: "c", 557: "L",
+    579: "k", 592: "vxy", 611: "FT", 612: "o", 613: "a", 615: "e", 634: "hnu", 635: "bdgpq",
+    637: "$0123456789{}µ", 667: "EKPSY", 684: "AV", 685: "XZ", 686: "B", 722: "CR", 732: "U", 748: "N",
+    752: "H", 770: "D", 778: "G", 780: "&", 788: "OQØ", 818: "w", 838: "#+<=>^~×±", 863: "M", 950: "%",
+    974: "m", 989: "W", 1000: "@…",
 }  # fmt: skip
 _OF = {letter: width / 1000 for width, letters in _WIDTHS.items() for letter in letters}
 _WIDE = 1.05  # a letter of East Asia

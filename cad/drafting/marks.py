@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import product
 from math import atan2, degrees, hypot
 
 from cad.drafting.curves import Curve, Point, joined
@@ -183,15 +184,14 @@ def cutting_line(page: Page, section: View, end: View, room: Room) -> None:
         room.add((middle - 9.5, min(start, stop) - 0.5, middle + 0.5, max(start, stop) + 1.0))
 
 
-def section_label(page: Page, section: View, room: Room) -> None:
-    """Draw the label A–A above the section, clear of other texts."""
-    if not section.cut:
-        return
-    (left, _), (right, high) = section.box
-    text = "A–A"
+def section_label(page: Page, view: View, letter: str, room: Room, least: float = 3.0) -> None:
+    """Draw a label such as A–A at the nearest free place above a section, at least so far above it [mm]."""
+    (left, _), (right, high) = view.box
+    text = f"{letter}–{letter}"
     width = width_of(text, LETTERS)
     x, y = page.plan.paper(((left + right) / 2, high))
-    boxes = ((x - width / 2, y + up, x + width / 2, y + up + LETTERS + 1.0) for up in range(3, 120))
+    x, y = x - width / 2, y + least
+    ways = sorted(product(range(-30, 31, 5), range(120)), key=lambda way: abs(way[0]) + way[1])
+    boxes = ((x + aside, y + up, x + aside + width, y + up + LETTERS + 1.0) for aside, up in ways)
     place = room.first((box, (box[0], box[1] + 0.5)) for box in boxes)
-    at_x, at_y = place or (x - width / 2, y + 3.0)
-    page.write(text, at_x, at_y, LETTERS)
+    page.write(text, *(place or (x, y)), LETTERS)

@@ -24,6 +24,7 @@ from cad.drafting.dimension_layout import TEXT, DimensionLayout, NoRoom, PlacedD
 from cad.drafting.labels import label_of
 from cad.drafting.lanes import Lane
 from cad.drafting.letter_width import width_of
+from cad.drafting.marks import LETTERS, section_label
 from cad.drafting.measures import Form, Measure, on
 from cad.drafting.page import Page
 from cad.drafting.parameter_match import Dimension, length_of, matched
@@ -35,7 +36,6 @@ from cad.drafting.views import View
 from cad.step import Body
 from cad.surfaces import Face, PartSurfaces, Surface, Y, Z
 
-LETTERS = 5.0  # height of the letters that name a section [mm on paper]
 _MARGIN = 12.0  # about a section, beside its lanes [mm on paper]
 _AT_ONCE = 200  # places whose room is looked up at once
 _STEP = 4.0  # between places that are tried [mm on paper]
@@ -228,7 +228,6 @@ def place(
         (*plan.paper((x, y)), *plan.paper((right, high))),
         [[plan.paper(point) for point in one.points] for one in view.visible],
     )
-    _label(page, room, view, removed.letter, above)
     page.view(view, 0.0)
     over = 3.0 / plan.scale
     middle = (x + right) / 2, (y + high) / 2
@@ -249,6 +248,7 @@ def place(
         along = (one.measure.points[0][0] + middle[0]) / 2  # beside the centre line
         placed.append(placing.within(one, along, high))
     placed += placing.local(_moved(one, shift) for one in local)
+    section_label(page, view, removed.letter, room, above - LETTERS - 1.5)
     return placed, view
 
 
@@ -291,16 +291,6 @@ def _corners(area: Rectangle, width: float, height: float) -> Iterator[Point]:
     for i in range(across + 1):
         for j in range(up + 1):
             yield left + i * _STEP, low + j * _STEP
-
-
-def _label(page: Page, room: Room, view: View, letter: str, above: float) -> None:
-    """Draw the label B–B above the section and the texts of its dimensions."""
-    (x, _), (right, high) = view.box
-    text = f"{letter}–{letter}"
-    middle, top = page.plan.paper(((x + right) / 2, high))
-    half, low = width_of(text, LETTERS) / 2, top + above - LETTERS - 1.0
-    page.write(text, middle - half, low, LETTERS)
-    room.add((middle - half, low - 0.5, middle + half, low + LETTERS + 0.5))
 
 
 def _moved(one: Dimension, shift: Point) -> Dimension:

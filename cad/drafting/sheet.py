@@ -90,7 +90,8 @@ def draw(bodies: Sequence[Body], header: Header | None, whole: Sequence[Body] = 
     sheet = SheetNumber.of(bodies, whole)
     content, laid = laid_out(bodies, seen, header, declared)
     page = laid.page
-    section_label(page, content.section, laid.room)
+    if content.section.cut:
+        section_label(page, content.section, "A", laid.room)
     _fill(page, content.section, content.end, laid.centres, laid.placed)
     frame(page)
     box = bounding_box(bodies)
@@ -156,8 +157,8 @@ def _laid(
         raise NoRoom
     controls = Controls(page, room, views, most - placing.faults)
     datum = controls.draw(declared, placed)
-    for number, target in balloons(content.section, bodies):
-        controls.balloon(str(number), plan.paper(target))
+    for number, view, target in balloons(content.section, content.end, bodies):
+        controls.balloon(str(number), plan.paper(target, plan.beside if view is content.end else 0.0))
     return Laid(page, room, centres, placed, datum, placing.faults + controls.faults)
 
 

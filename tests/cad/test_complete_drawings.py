@@ -11,8 +11,10 @@ from slow_models import DRAWN, quick_for
 from benchmarks.drawing_completeness import faults, faults_of
 from benchmarks.drawings import SIZES, latest, sized
 from cad.catalogue import models
+from cad.drafting.balloons import balloons
 from cad.drafting.content import Content, content_of
 from cad.drafting.labels import label_of
+from cad.drafting.views import views
 from cad.export import derive
 from cad.file_kinds import bodies_of
 from cad.header import Header, read_header
@@ -98,6 +100,25 @@ def test_each_part_has_a_sheet_and_the_first_sheet_lists_them(model: type[CadMod
         assert {str(n) for n in range(1, len(whole) + 1)} <= first  # in the balloons
         assert f"2/{len(whole) + 1}" in own
         assert whole[0].name.replace("_", " ") in own
+
+
+def balloons_of(id: str) -> dict[str, tuple[bool, tuple[float, float]]]:
+    """Of each part, whether its balloon points to the end view, and where."""
+    bodies = read_step(sized(models().get(id, 1), 1.0).step)
+    section, end = views(bodies)
+    every = balloons(section, end, bodies)
+    return {bodies[number - 1].name: (view is end, point) for number, view, point in every}
+
+
+def test_a_balloon_points_to_a_view_that_shows_its_part() -> None:
+    """Dowels and bolts of a housing are beside its section, and in the broken-out section of the end view."""
+    in_end = {name: is_in_end for name, (is_in_end, _) in balloons_of("bearing_housing").items()}
+    assert in_end == {"block": False, "cap": False, "dowel": True, "bolt": True}
+
+
+def test_a_balloon_points_into_the_material_of_a_thin_part() -> None:
+    height = {name: y for name, (_, (_, y)) in balloons_of("plain_bearing").items()}
+    assert 24.0 < height["upper_lining"] < 24.6 < height["upper_back"] < 26.4  # of a bore of 48 mm
 
 
 def words_of(dxf: bytes) -> set[str]:
