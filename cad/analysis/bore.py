@@ -36,7 +36,7 @@ from netgen.occ import HalfSpace, OCCGeometry, Pnt, Vec
 
 from cad.analysis.elastic import stress
 from cad.analysis.kinds import HARMONICS, mode_names
-from cad.analysis.mesh import MOST_ELEMENTS, ONE_THREAD, curve
+from cad.analysis.mesh import ONE_THREAD, curve, meshed
 from cad.analysis.solid import FREE, HELD, MIRROR
 from cad.errors import AnalysisError
 from cad.shaft import BorePlace
@@ -151,17 +151,9 @@ def bore_mesh(solid: BoredSolid, fineness: BoreFineness) -> Any:
     for face in solid.shape.faces:
         if face.name == BORE:
             face.maxh = fineness.bore * radius
-    parameters = MeshingParameters(
-        maxh=fineness.body * radius, grading=_GRADING, curvaturesafety=1.0, **ONE_THREAD
-    )
-    try:
-        mesh = ng.Mesh(OCCGeometry(solid.shape).GenerateMesh(parameters))
-    except Exception as error:  # Netgen raises no more specific exception
-        raise AnalysisError("mesh", f"Netgen could not mesh the solid: {error}") from error
-    if mesh.ne > MOST_ELEMENTS:
-        detail = f"the mesh would have {mesh.ne} elements, more than {MOST_ELEMENTS}: ask for another level"
-        raise AnalysisError("mesh", detail)
-    return mesh
+    largest = fineness.body * radius
+    parameters = MeshingParameters(maxh=largest, grading=_GRADING, curvaturesafety=1.0, **ONE_THREAD)
+    return meshed(solid.shape, parameters, largest)
 
 
 def mode_functions(place: BorePlace) -> list[Any]:

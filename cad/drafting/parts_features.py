@@ -231,7 +231,8 @@ class _Reader:
 
     def _is_round_end(self, cylinder: Surface) -> bool:
         """Return whether planes touch a cylinder on two sides and no larger cylinder is coaxial."""
-        if any(_are_in_line(c, cylinder) and c.diameter > cylinder.diameter + _CLEAR for c in self.cylinders):
+        larger = (c for c in self.cylinders if c.diameter > cylinder.diameter + _CLEAR)
+        if any(_are_in_line(c, cylinder) for c in larger):
             return False
         beside = [p for p in self.planes if cylinder.along(Z) and abs(p.direction.dot(Z)) < _FLAT]
         away = [(cylinder.point - p.point).dot(p.direction) for p in beside if p.face[0] == cylinder.face[0]]
