@@ -234,6 +234,10 @@ def _in_models(raw: Mapping[str, Raw]) -> Mapping[str, Json]:
     return {**rest, "models": {"model": raw["model"]}}
 
 
+StoredDocument = JsonObject
+"""A document as a revision stores it: `Document.model_dump` in JSON mode, by any version of the program."""
+
+
 def merge(document: Mapping[str, Json], patch: Mapping[str, Raw]) -> JsonObject:
     """Return the document with a merge patch applied (RFC 7396).
 

@@ -15,7 +15,7 @@ from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import judged
 from app.designs.network import Block
 from app.designs.result_cells import cells
-from app.designs.roundings import ROUNDED, as_member, rounded
+from app.designs.roundings import ROUNDED, RoundedValue, as_member, rounded
 from app.designs.variants.names import BASE
 from app.designs.variants.verdict import VARIANT, merged
 from app.designs.worksheet import remember
@@ -176,7 +176,7 @@ def _variant(
     outputs: Mapping[str, JsonObject],
     failures: Mapping[str, JsonObject],
     problem: JsonObject | None,
-    chosen: Sequence[JsonObject],
+    chosen: Sequence[RoundedValue],
 ) -> JsonObject:
     """Return one variant in the form that a revision stores, without empty members."""
     parts: JsonObject = {

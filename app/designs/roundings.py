@@ -7,6 +7,7 @@ criteria are judged. A value that only names a rounded one, such as `= pin`, is 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
+from typing import TypedDict
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from app.designs.engine.calculation import Calculation
 from app.designs.engine.needs import needs
 from app.designs.graph import build_graph, starts
 from app.designs.network import LIMITS, Cell, Graph
-from app.plain import Json, JsonObject, Raw
+from app.plain import Raw
 from app.reference import Reference
 from templates.core.errors import listed
 from templates.core.units.units import Unit
@@ -26,20 +27,36 @@ DIGITS = 12  # of a shown value, as many as a model's parameters have
 ROUNDED = "rounded"
 
 
-def rounded(calculation: Calculation) -> list[JsonObject]:
+class ShownQuantity(TypedDict):
+    """A quantity as a revision stores it; its value is a number or a list of any depth."""
+
+    value: object
+    unit: str
+
+
+class RoundedValue(TypedDict):
+    """A rounded value as a revision stores it."""
+
+    name: str
+    rule: str
+    calculated: ShownQuantity
+    chosen: ShownQuantity
+
+
+def rounded(calculation: Calculation) -> list[RoundedValue]:
     """Return every known rounded value by its name: the rule, the calculated and the chosen value."""
     return [
         row for cell in calculation.graph.cells() if (row := rounded_value(calculation, cell)) is not None
     ]
 
 
-def as_member(calculation: Calculation) -> JsonObject:
+def as_member(calculation: Calculation) -> dict[str, list[RoundedValue]]:
     """Return the rounded values as the member `rounded` of stored results; empty if there are none."""
     rows = rounded(calculation)
     return {ROUNDED: rows} if rows else {}
 
 
-def rounded_value(calculation: Calculation, cell: Cell) -> JsonObject | None:
+def rounded_value(calculation: Calculation, cell: Cell) -> RoundedValue | None:
     """Return the rule, calculated and chosen value of a cell; None if it is pending or not rounded."""
     source = _source(calculation.graph, cell)
     column = calculation.values.get(source.name) if source is not None else None
@@ -67,14 +84,14 @@ def _source(graph: Graph, cell: Cell) -> Cell | None:
     return cell
 
 
-def _quantity(si: object, scale: Unit) -> JsonObject:
+def _quantity(si: object, scale: Unit) -> ShownQuantity:
     return {
         "value": _plain(np.asarray(scale.from_si(np.asarray(si, dtype=float))).tolist()),
         "unit": scale.text,
     }
 
 
-def _plain(value: Json) -> Json:
+def _plain(value: object) -> object:
     return [_plain(item) for item in value] if isinstance(value, list) else float(f"{value:.{DIGITS}g}")
 
 
@@ -129,7 +146,7 @@ def with_chosen_sizes(document: Document, catalogues: Catalogues) -> Document:
     return plain
 
 
-def _chosen(design: Calculation) -> Iterator[tuple[Cell, JsonObject]]:
+def _chosen(design: Calculation) -> Iterator[tuple[Cell, ShownQuantity]]:
     for cell in design.graph.cells():
         if cell.roundings and (column := design.values.get(cell.name)) is not None:
             yield cell, _quantity(column.value, cell.roundings[0].scale)

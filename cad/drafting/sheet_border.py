@@ -235,7 +235,7 @@ def _value(text: str, limits: Limits | None) -> str:
     value, is_angle = size
     if is_angle:
         within = angle_tolerance(text)
-        return " ".join((f"{number_of(value, 6)}°", *([_ends(within)] if within else [])))
+        return " ".join((f"{number_of(value, 6)}°", *([f"{_ends(within)}°"] if within else [])))
     if limits is None:
         return number_of(value, 6)
     return " ".join(filter(None, (number_of(value, 6), limits.zone, _ends(limits))))

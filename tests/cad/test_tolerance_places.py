@@ -142,6 +142,17 @@ def test_a_marked_tolerance_stands_in_the_table_with_an_asterisk_and_among_the_a
     assert "thickness *" not in texts
 
 
+@pytest.mark.slow
+def test_a_marked_tolerance_of_an_angle_stands_in_the_table_in_degrees():
+    cls = models().get("plain_bearing", 1)
+    marked = {"inner_diameter": "48 mm", "shells": "upper", "oil_groove_angle": "100 +2/-1 deg, in table"}
+    texts = as_text(cls.from_quantities({**cls.example, **marked}))
+    drawing = ezdxf.read(io.StringIO(derive(regenerate_class(cls, texts).step, "dxf").decode()))
+    rows = [one.dxf.text for one in drawing.modelspace().query("TEXT")]
+    assert "oil groove angle *" in rows
+    assert "100° +2.0/-1.0°" in rows
+
+
 def test_a_marked_tolerance_of_a_hole_that_is_not_there_stands_in_the_table():
     cls = models().get("thrust_washer", 1)
     texts = as_text(cls.from_quantities({**cls.example, "pin_hole_diameter": "0 mm"}))
