@@ -31,6 +31,7 @@ class Field:
     needed: bool = True
     is_list: bool = False  # whether it has several values, to be edited item by item or pasted
     own: bool = False  # whether it is a design's own parameter, which has only its name
+    assumed: str = ""  # source of a proposed value that is still in use
     labels: Mapping[str, str] = field(default_factory=dict)  # words of the options
     suggestions: Mapping[str, str] = field(default_factory=dict)  # suggested texts, each with its meaning
 
@@ -76,8 +77,9 @@ def of_parameters(
     values: Mapping[str, object],
     typed: Mapping[str, str],
     faults: Mapping[str, str],
+    assumed: Mapping[str, str] | None = None,
 ) -> list[Field]:
-    """Return the fields for a design's own parameters."""
+    """Return the fields for a design's own parameters; `assumed` are the sources of proposed values."""
     return [
         Field(
             name=name,
@@ -87,6 +89,7 @@ def of_parameters(
             error=faults.get(name),
             value=values.get(name) if is_relation(cell) else None,
             own=True,
+            assumed=(assumed or {}).get(name, ""),
         )
         for name, cell in cells.items()
     ]
