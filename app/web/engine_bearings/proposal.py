@@ -6,6 +6,7 @@ long as it stays unchanged.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
@@ -13,6 +14,11 @@ from typing import TypeVar
 
 from pydantic import JsonValue
 
+from app.catalogue.catalogues import Catalogues
+from app.designs.document import Document
+from app.designs.engine.calculate import calculate
+from app.designs.graph import build_graph
+from app.presentation import numbers
 from app.web.engine_bearings import ratios
 from app.web.engine_bearings.document import SHELL, Bearing, bearings, film_step, heat_step
 from app.web.engine_bearings.fields import QUANTITIES, firing_order, oil_grade, quantity_text, viscosity
@@ -20,6 +26,8 @@ from app.web.engine_bearings.gas import Diagram
 from app.web.engine_bearings.layouts import LAYOUTS, Layout
 from app.web.engine_bearings.ratios import Ratio
 from templates.core.errors import FaultyText
+from templates.core.units.relation import is_relation
+from templates.core.units.units import unit
 
 PETROL, DIAGRAM = "petrol", "diagram"
 """Choices of the field `gas`; the second is also the name of the file's field."""
@@ -34,6 +42,7 @@ _MECHANISM = (
     "support_stiffness",
 )  # fmt: skip
 """Inputs of the engine that are parameters of the design with the same name."""
+_NAMES = re.compile(r"[a-z][a-z_]{2,}")
 Value = TypeVar("Value")
 
 
@@ -241,3 +250,38 @@ def _cycle(gas: str, diagram: Diagram | None, offers: Mapping[str, Ratio]) -> di
         "pressure": {"value": list[JsonValue](diagram.pressures), "unit": "bar"},
         "crankcase_pressure": "= crankcase_pressure",
     }
+
+
+def proposed_values(
+    parameters: Mapping[str, JsonValue], offers: Mapping[str, Ratio], catalogues: Catalogues
+) -> dict[str, str]:
+    """Return the value of each proposal whose relation depends on determined parameters only."""
+    determined = _determined(parameters)
+    graph, faults = build_graph(Document(name="proposals", parameters=determined), catalogues)
+    if faults:
+        return {}
+    result = calculate(graph, lambda *_: None, lambda *_: None)
+    shown = [name for name in offers if name in result.values and is_relation(determined.get(name))]
+    return {name: _written(float(result.values[name].value), offers[name].unit) for name in shown}
+
+
+def _written(value: float, declared: str) -> str:
+    """Return a value in SI as the page shows it in its declared unit."""
+    return f"= {numbers.plain(float(unit(declared).from_si(value)))} {numbers.unit(declared)}"
+
+
+def _determined(parameters: Mapping[str, JsonValue]) -> dict[str, JsonValue]:
+    """Return the quantities, and the relations between them."""
+    determined: dict[str, JsonValue] = {
+        name: value for name, value in parameters.items() if value and not is_relation(value)
+    }
+    waiting = {name: str(value) for name, value in parameters.items() if is_relation(value)}
+    for _ in parameters:
+        ready = {n: text for n, text in waiting.items() if _of(text, parameters) <= determined.keys()}
+        determined |= ready
+        waiting = {name: text for name, text in waiting.items() if name not in ready}
+    return determined
+
+
+def _of(relation: str, parameters: Mapping[str, JsonValue]) -> set[str]:
+    return {name for name in _NAMES.findall(relation) if name in parameters}

@@ -15,8 +15,7 @@ from app.web.engine_bearings.fields import OIL, QUANTITIES
 from app.web.engine_bearings.gas import Diagram, diagram_of
 from app.web.engine_bearings.layouts import LAYOUTS
 from app.web.engine_bearings.pictures import PICTURES
-from app.web.engine_bearings.preview import proposed_values
-from app.web.engine_bearings.proposal import DIAGRAM, PETROL, Proposal, propose
+from app.web.engine_bearings.proposal import DIAGRAM, PETROL, Proposal, propose, proposed_values
 from app.web.engine_bearings.ratios import Ratio
 from app.web.shared.multipart import forms_with_files, parts_of
 from app.web.shared.responses import go, show

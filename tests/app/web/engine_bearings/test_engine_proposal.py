@@ -10,8 +10,7 @@ from app.designs.bodies import DesignIn
 from app.designs.document import assumed_values
 from app.web.engine_bearings.gas import diagram_of
 from app.web.engine_bearings.layouts import LAYOUTS
-from app.web.engine_bearings.preview import proposed_values
-from app.web.engine_bearings.proposal import propose, proposed
+from app.web.engine_bearings.proposal import propose, proposed, proposed_values
 
 TWENTY = [
     *(scaled(layout, bore) for layout, bore in zip(LAYOUTS, np.linspace(60, 130, len(LAYOUTS)), strict=True)),
