@@ -87,7 +87,8 @@ def changed_step(root: Path = ROOT) -> Files:
 
         def patch(turn: int) -> httpx.Response:
             change = {"steps": {"film": {"inputs": {"bearing_width": f"{20 + turn} mm"}}}}
-            return http.patch(f"{API}/designs/{design['id']}", json=change, headers=QUIET)
+            address, minimal = f"{API}/designs/{design['id']}", {"return": "minimal"}
+            return http.patch(address, params=minimal, json=change, headers=QUIET)
 
         return _counted(calls, root, patch)
 

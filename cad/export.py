@@ -11,7 +11,7 @@ from cad.drafting.paper import as_pdf
 from cad.drafting.sheet import write_dxf
 from cad.drafting.svg import write_drawing
 from cad.drawing import write_svg
-from cad.file_kinds import BY_PART, bodies_of, deflection_of, plain_kind
+from cad.file_kinds import BY_PART, VALIDATED, bodies_of, deflection_of, plain_kind
 from cad.gltf import write_glb
 from cad.header import Header, read_header
 from cad.mesh import Mesh, closed_mesh, mesh
@@ -20,27 +20,6 @@ from cad.step import Body, read_step
 from cad.stl import write_stl
 from cad.threemf import write_3mf
 from cad.validation import with_validation
-
-VALIDATED = "validated.step"
-"""The kind of a STEP file that states volume, area and centroid of each part."""
-
-MEDIA_TYPES = {
-    VALIDATED: "model/step",
-    "step": "model/step",
-    "glb": "model/gltf-binary",
-    "stl": "model/stl",
-    "3mf": "model/3mf",
-    "brep": "application/x-brep",
-    "drawing.svg": "image/svg+xml",
-    "svg": "image/svg+xml",
-    "png": "image/png",
-    "dxf": "image/vnd.dxf",
-    "drawing.pdf": "application/pdf",
-}
-"""Media types of all kinds of files of a build; the last kind with a media type is its default."""
-
-DRAWINGS = ("drawing.svg", "dxf", "drawing.pdf")
-"""Kinds of files that show dimensions; they take longer than a picture."""
 
 
 def derive(step: bytes, kind: str) -> bytes:

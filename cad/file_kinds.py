@@ -1,8 +1,9 @@
-"""Kinds of derived files with options: the deflection of a mesh, and a single part.
+"""Kinds of files of a build, and their options: the deflection of a mesh, and a single part.
 
-A kind with options is named `stl@0.05mm#upper_shell`, and its file is stored in addition to that of `stl`.
-The deflection is the largest distance of a facet from the true surface. Deflections are rounded down to six
-values per decade, so a part has at most 19 meshes of a kind, however many deflections are requested.
+Pages, commands and routes offer the kinds that are listed here. A kind with options is named
+`stl@0.05mm#upper_shell`, and its file is stored in addition to that of `stl`. The deflection is the largest
+distance of a facet from the true surface. Deflections are rounded down to six values per decade, so a part
+has at most 19 meshes of a kind, however many deflections are requested.
 """
 
 from __future__ import annotations
@@ -10,14 +11,38 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from math import floor, log10
+from typing import TYPE_CHECKING
 
-from cadquery import Location
-
-from cad.step import Body
 from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt, listed
 from templates.core.units.quantity import read
 from templates.core.units.units import unit
 
+if TYPE_CHECKING:
+    from cad.step import Body
+
+VALIDATED = "validated.step"
+"""The kind of a STEP file that states volume, area and centroid of each part."""
+
+MEDIA_TYPES = {
+    VALIDATED: "model/step",
+    "step": "model/step",
+    "glb": "model/gltf-binary",
+    "stl": "model/stl",
+    "3mf": "model/3mf",
+    "brep": "application/x-brep",
+    "drawing.svg": "image/svg+xml",
+    "svg": "image/svg+xml",
+    "png": "image/png",
+    "dxf": "image/vnd.dxf",
+    "drawing.pdf": "application/pdf",
+}
+"""Media types of all kinds of files of a build; the last kind with a media type is its default."""
+
+DRAWINGS = ("drawing.svg", "dxf", "drawing.pdf")
+"""Kinds of files that show dimensions; they take longer than a picture."""
+
+SHOWN = ("step", "glb")
+"""Kinds of files that a page shows; they are created with a build, all others on request."""
 MESHES = ("glb", "stl", "3mf")
 """Kinds of files made of triangles; a user may choose their deflection."""
 BY_PART = (*MESHES, "brep", "drawing.svg", "dxf")
@@ -112,6 +137,8 @@ def bodies_of(kind: str, bodies: Sequence[Body]) -> Sequence[Body]:
         offered = f"the only part is {names}" if len(bodies) == 1 else f"the parts are {names}"
         detail = f"there is no part {excerpt(part)}; {offered}"
         raise InvalidInputs([Fault("part", "unknown_part", detail)])
+    from cadquery import Location  # it takes a second, and a command that lists kinds needs no geometry
+
     return [replace(body, places=(Location(),)) for body in found]
 
 

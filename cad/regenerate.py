@@ -49,7 +49,7 @@ from templates.core.errors import InvalidInputs
 from templates.core.units.tolerance import STATE_IN_TABLE
 
 __all__ = [
-    "Build", "as_quantities", "as_text", "build_key", "made_by", "regenerate", "regenerate_class",
+    "Build", "as_quantities", "as_text", "as_typed", "build_key", "made_by", "regenerate", "regenerate_class",
     "regenerate_from_text", "regenerate_shape",
 ]  # fmt: skip
 
@@ -106,6 +106,14 @@ def as_quantities(model: CadModel) -> dict[str, dict[str, Value]]:
     A toleranced parameter also has `upper` and `lower`, its limit deviations in that unit, and its `zone`.
     """
     return {name: dict(quantity) for name, quantity in _canonical(model).quantities.items()}
+
+
+def as_typed(model: CadModel) -> dict[str, dict[str, Value]]:
+    """Return every parameter as `as_quantities` does, also with tolerances that no file states."""
+    quantities = as_quantities(model)
+    for name, tolerance in table_tolerances(model, marked=False).items():
+        quantities[name] |= _stated(tolerance.lower, tolerance.upper, tolerance.zone, in_table=False)
+    return quantities
 
 
 def build_key(model: CadModel) -> str:

@@ -15,6 +15,7 @@ from html import escape
 
 from cad.drafting.letter_width import clipped, width_of
 from cad.drafting.title import STAMPED as STAMPED_FIELDS
+from cad.drafting.title import STAMPED_OF_PART
 from cad.file_names import name, plain_name, stem, wide_stem
 from cad.part21 import end_of_string, plain, quoted
 
@@ -28,7 +29,10 @@ MARK = "stamp:"
 """Prefix in the extended data of a DXF text; the line of the title block follows it."""
 
 LONGEST_LINE = 44  # letters that fit into the title block of an older drawing
-_SVG_LINE = re.compile(r'(<text data-stamp="([a-z-]+)"[^>]*>)[^<]*')
+_SVG_LINE = re.compile(r'(<text data-stamp="([a-z-]+)"[^>]*>)([^<]*)')
+_DENSITY = re.compile(r"([0-9.e+-]+) kg/m³")
+_VOLUME = re.compile(r"([0-9.e+-]+) (mm³|dm³)")
+_METRES = {"mm³": 1e-9, "dm³": 1e-3}
 
 
 @dataclass(frozen=True)
@@ -39,7 +43,8 @@ class Stamp:
 
     `materials` are the materials of the parts by name, empty if unknown. The file name of a variant contains
     the variant, and the model only if the design has several (`is_only` is false). If title, number or
-    revision mark are given, they replace those of the design in a title block.
+    revision mark are given, they replace those of the design in a title block. `part` is the part on a sheet
+    of one part.
     """
 
     design: str
@@ -58,6 +63,8 @@ class Stamp:
     title: str = ""
     number: str = ""
     mark: str = ""
+    part: str = ""
+    rounded: str = ""  # parameters that the design rounds: calculated and chosen values
 
     @property
     def called(self) -> str:
@@ -111,7 +118,16 @@ class Stamp:
             "material": self._short_material,
             "mass": "" if self.mass is None else f"{self.mass:.4g} kg",
             "part": self.named,
+            "rounded": self.rounded,
         }
+
+    def of_part(self, volume: str) -> dict[str, str]:
+        """Return the material and mass of the part on its sheet, whose title block gives its volume [mm³]."""
+        materials = [*self.materials.values()]
+        material = self.materials.get(self.part, materials[0] if len(materials) == 1 else "")
+        density, amount = _DENSITY.search(material), _VOLUME.search(volume)
+        mass = float(density[1]) * float(amount[1]) * _METRES[amount[2]] if density and amount else None
+        return {"material": material, "mass": "" if mass is None else f"{mass:.4g} kg"}
 
     @property
     def _short_material(self) -> str:
@@ -227,8 +243,12 @@ def _behind_comma(text: str, place: int) -> int:
 
 
 def _stamped_svg(text: str, stamp: Stamp) -> str:
-    lines = {name: escape(line) for name, line in _lines(stamp).items()}
-    return _SVG_LINE.sub(lambda line: line[1] + lines.get(line[2], ""), text)
+    lines = _lines(stamp)
+
+    def written(line: re.Match[str]) -> str:
+        return line[1] + escape(_written(line[2], line[3], lines, stamp) or "")
+
+    return _SVG_LINE.sub(written, text)
 
 
 def _stamped_dxf(text: str, stamp: Stamp) -> str:
@@ -236,15 +256,24 @@ def _stamped_dxf(text: str, stamp: Stamp) -> str:
 
     DXF consists of pairs of lines, a code and its value; the mark of a text comes after the text.
     """
-    lines, written = text.split("\n"), _lines(stamp)
+    lines, known = text.split("\n"), _lines(stamp)
     last = 0
     for place in range(0, len(lines) - 1, 2):
         code, value = lines[place].strip(), lines[place + 1]
         if code == "1":
             last = place + 1
-        elif code == "1000" and (mark := value.removeprefix(MARK)) != value and mark in written:
-            lines[last] = written[mark].replace("^", "^ ").replace("%%", "%%%%%%")
+        elif code == "1000" and (mark := value.removeprefix(MARK)) != value:
+            written = _written(mark, lines[last], known, stamp)
+            if written is not None:
+                lines[last] = written.replace("^", "^ ").replace("%%", "%%%%%%")
     return "\n".join(lines)
+
+
+def _written(mark: str, text: str, lines: Mapping[str, str], stamp: Stamp) -> str | None:
+    """Return the text of a marked field in place of the drawing's own; None for a mark that is not known."""
+    if (field_ := STAMPED_OF_PART.get(mark)) is None:
+        return lines.get(mark)
+    return clipped(stamp.of_part(text)[field_.name], field_.room, field_.letters)
 
 
 def _lines(stamp: Stamp) -> dict[str, str]:

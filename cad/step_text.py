@@ -102,7 +102,9 @@ def _in_axes_of_file(data: str) -> str:
         return data
     root = _ROOT.search(data)
     assert root is not None, "the kernel's file has a product"
-    context = re.search(rf"^#{root[1]} = [A-Z_]*SHAPE_REPRESENTATION\([^;]*,(#\d+)\);", data, re.MULTILINE)
+    context = re.search(
+        rf"^#{root[1]} = [A-Z_]*SHAPE_REPRESENTATION\([^;]*,\s*(#\d+)\s*\);", data, re.MULTILINE
+    )
     assert context is not None, "the first product has a shape"
     return f"{data[: model.start()]}{model[1]}{context[1]});{data[model.end() :]}"
 

@@ -181,11 +181,12 @@ class Surface:
     def moved(self, turn: Array, shift: Array) -> Surface:
         """Return the surface after its part was turned (3, 3) and then shifted (3,) [mm]."""
         point = Vector(*(turn @ self.point.toTuple() + shift))
+        middle = None if self.middle is None else Vector(*(turn @ self.middle.toTuple() + shift))
         direction = Vector(*(turn @ self.direction.toTuple()))
         along = point.dot(direction) - self.point.dot(self.direction)
         low, high = self.reach
         reach = (low + along, high + along) if self.reach != (0.0, 0.0) else self.reach
-        return replace(self, point=point, direction=direction, reach=reach)
+        return replace(self, point=point, direction=direction, reach=reach, middle=middle)
 
     def about(self, axis: Vector) -> bool:
         """Return whether the surface is coaxial with that axis through the origin."""
@@ -223,6 +224,11 @@ class PartSurfaces:
     def surfaces(self) -> tuple[Surface, ...]:
         """Return every surface of the part."""
         return (*self.planes, *self.cylinders, *self.spheres, *self.tori, *self.cones)
+
+    def moved(self, turn: Array, shift: Array) -> PartSurfaces:
+        """Return the surfaces after the part was turned (3, 3) and then shifted (3,) [mm]."""
+        kinds = (self.planes, self.cylinders, self.spheres, self.tori, self.cones)
+        return PartSurfaces(self.count, *(tuple(one.moved(turn, shift) for one in kind) for kind in kinds))
 
     def levels(self, axis: Vector) -> list[float]:
         """Return the coordinates along an axis of the planes perpendicular to it [mm], ascending."""

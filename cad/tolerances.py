@@ -158,38 +158,48 @@ def _wrong(cls: type[TolerancedTemplate], name: str, detail: str) -> TypeError:
     return TypeError(f"{cls.__name__}.toleranced, {name}: {detail}")
 
 
+Given = Mapping[str, TypedQuantity | str]
+"""The values of parameters as a user typed them."""
+
+
 def limits(model: TolerancedTemplate) -> dict[str, Limits]:
     """Return, by parameter, the limits that a user gave to dimensions that may have them."""
-    declared, given = type(model).toleranced, model.ledger.typed
-    return dict(
-        _single((name, typed) for name in declared if isinstance(typed := given.get(name), TypedQuantity))
-    )
+    return _limits(type(model), model.ledger.typed)
 
 
-def table_tolerances(model: TolerancedTemplate) -> dict[str, TableTolerance]:
-    """Return the tolerances that only the table of a drawing may state, by parameter."""
+def _limits(cls: type[TolerancedTemplate], given: Given) -> dict[str, Limits]:
+    declared = ((name, given[name]) for name in cls.toleranced if name in given)
+    return dict(_single((name, typed) for name, typed in declared if isinstance(typed, TypedQuantity)))
+
+
+def table_tolerances(model: TolerancedTemplate, *, marked: bool = True) -> dict[str, TableTolerance]:
+    """Return the tolerances that only the table of a drawing may state, by parameter.
+
+    If not `marked`, return those that nothing states.
+    """
     on_faces = limits(model)
     return {
-        name: TableTolerance(*_ends(typed, model.inputs[name].meaning.unit), tolerance.zone)
-        for name, typed, tolerance in _given(model)
-        if name not in on_faces and tolerance.state_in_table
+        name: TableTolerance(*_ends(tolerance, model.inputs[name].meaning.unit), tolerance.zone)
+        for name, _, tolerance in _given(model.ledger.typed)
+        if name not in on_faces and tolerance.state_in_table == marked and not _is_of_items(tolerance)
     }
 
 
-def not_stated(model: TolerancedTemplate) -> Iterator[Fault]:
+def not_stated(cls: type[TolerancedTemplate], given: Given) -> Iterator[Fault]:
     """Yield a fault for each tolerance that no face can carry and that no table is to state."""
-    on_faces = limits(model)
-    for name, typed, tolerance in _given(model):
+    on_faces = _limits(cls, given)
+    for name, typed, tolerance in _given(given):
         if name in on_faces:
             continue
-        if np.ndim(tolerance.lower) or np.ndim(tolerance.upper):
+        if _is_of_items(tolerance):
             detail = "the items of a list share one tolerance: give `plus` and `minus` beside the list"
-            yield Fault(name, "tolerance_not_stated", detail)
+            yield Fault(name, NOT_STATED, detail)
         elif not tolerance.state_in_table:
-            detail = f"no file can state its tolerance at a face: {why_no_face(type(model), name, typed)}"
-            yield Fault(name, "tolerance_not_stated", f"{detail}; {REMEDY}")
+            detail = f"no face can carry its tolerance: {why_no_face(cls, name, typed)}; {REMEDY}"
+            yield Fault(name, NOT_STATED, detail)
 
 
+NOT_STATED = "tolerance_not_stated"
 REMEDY = (
     "omit the tolerance, or let the table of the drawing state it: end the text with `, in table`, or set "
     "`state_in_table` to true in an object"
@@ -207,19 +217,23 @@ def why_no_face(cls: type[TolerancedTemplate], name: str, typed: TypedQuantity |
     return "this length is not the size of a face, nor the distance of two faces"
 
 
-def _given(model: TolerancedTemplate) -> Iterator[tuple[str, TypedQuantity, Tolerance]]:
+def _given(given: Given) -> Iterator[tuple[str, TypedQuantity, Tolerance]]:
     """Yield the parameters that have a tolerance whose limits differ."""
-    for name, typed in model.ledger.typed.items():
+    for name, typed in given.items():
         if not isinstance(typed, TypedQuantity) or (tolerance := typed.tolerance) is None:
             continue
         if np.any(np.asarray(tolerance.upper) - tolerance.lower > 0):
             yield name, typed, tolerance
 
 
-def _ends(typed: TypedQuantity, name: str) -> tuple[float, float]:
+def _is_of_items(tolerance: Tolerance) -> bool:
+    """Return whether each item of a list has its own tolerance."""
+    return bool(np.ndim(tolerance.lower) or np.ndim(tolerance.upper))
+
+
+def _ends(tolerance: Tolerance, name: str) -> tuple[float, float]:
     """Return the lower and upper limit deviation in a unit."""
-    tolerance, factor = typed.tolerance, unit(name).factor
-    assert tolerance is not None
+    factor = unit(name).factor
     lower, upper = (float(f"{float(end) / factor:.12g}") + 0.0 for end in (tolerance.lower, tolerance.upper))
     return lower, upper
 
@@ -277,9 +291,10 @@ def in_unit(within: Limits, name: str) -> tuple[float, float]:
     return lower, upper
 
 
-def angle_tolerance(text: str) -> TableTolerance:
-    """Return the limit deviations [deg] of an angle given as text."""
-    return TableTolerance(*_ends(read(text, "deg"), "deg"))
+def angle_tolerance(text: str) -> TableTolerance | None:
+    """Return the limit deviations [deg] of an angle given as text; None if it has no tolerance."""
+    tolerance = read(text, "deg").tolerance
+    return TableTolerance(*_ends(tolerance, "deg")) if tolerance else None
 
 
 def deviations(limits: Limits | TableTolerance) -> tuple[str, str]:

@@ -72,7 +72,7 @@ def require_files(row: RevisionRow, now: Present) -> Files:
     bare = [model.name for model in row.models if STEP not in now.files.get(model.name, {})]
     bare += [name for name, kinds in now.files.items() if STEP not in kinds and name not in bare]
     if bare:
-        raise NotReady(f"revision {row.number} has no solid of {', '.join(bare)}: set its parameters first")
+        raise NotReady(f"{', '.join(bare)} has no solid: set its dimensions before signing")
     return now.files
 
 

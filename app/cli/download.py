@@ -9,13 +9,21 @@ import httpx
 
 from app.client import Client, File, Problem
 from app.settings import Settings
+from cad.file_kinds import BY_PART, MEDIA_TYPES
+
+KINDS = ", ".join(MEDIA_TYPES)
 
 
-@click.command("download")
+@click.command(
+    "download",
+    help="Save a file of DESIGN (an id) as {design}_{model}_r{revision}.KIND.\n\n"
+    f"KIND is one of {KINDS}; or zip, for the STEP files of all variants. If the service must create the "
+    "file first, the command waits for it.",
+)
 @click.argument("design")
 @click.argument("kind", default="step")
 @click.option("--model", default=None, help="name of the model in the design, if there are several")
-@click.option("--part", default=None, help="the only part in a glb, stl, 3mf or brep file")
+@click.option("--part", default=None, help=f"the only part in a file of kind {', '.join(BY_PART)}")
 @click.option("--variant", default=None, help="variant of the design; default: the design itself")
 @click.option(
     "--revision",
@@ -37,11 +45,7 @@ def download_command(
     folder: Path,
     url: str | None,
 ) -> None:
-    """Save a file of DESIGN (an id) as {design}_{model}_r{revision}.KIND.
-
-    KIND is step, validated.step, glb, stl, 3mf, brep, svg, png, drawing.svg, drawing.pdf or dxf; or zip, for
-    the STEP files of all variants. If the service must create the file first, the command waits for it.
-    """
+    """Save a file of a design."""
     place = url or f"http://127.0.0.1:{Settings().port}"
     try:
         with Client(place) as client:

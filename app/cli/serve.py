@@ -74,9 +74,7 @@ def serve_command(host: str | None, port: int | None, data: Path | None, insecur
         message = f"{settings.data.absolute()} cannot hold the data: {error.strerror}"
         raise click.ClickException(f"{message}; name another folder with --data") from None
     place = f"[{settings.host}]" if ":" in settings.host else settings.host
-    click.echo(
-        f"Crankwright at http://{place}:{settings.port}/docs, data in {settings.data.absolute()}", err=True
-    )
+    click.echo(f"Crankwright at http://{place}:{settings.port}, data in {settings.data.absolute()}", err=True)
     server.run(create_app(settings), settings)
 
 

@@ -201,7 +201,7 @@ def build(key: str) -> Exchange[Build]:
 def model(id: str, kind: str = "step", *, on_progress: Progress | None = None) -> Exchange[bytes]:
     """Return a file of the design's newest valid model.
 
-    The kind is step, validated.step, glb, stl, 3mf, brep, svg, png, drawing.svg, drawing.pdf or dxf.
+    The kind is one of `cad.file_kinds.MEDIA_TYPES`, such as `step`, `stl` or `drawing.pdf`.
     """
     return _file(f"/designs/{id}/model.{kind}", on_progress)
 

@@ -3,19 +3,22 @@
 A proposal is applied only if the user accepts it. A value fits by three tests:
 
 - the *kind*: value and parameter are the same kind of quantity, and a curve never fits a single value;
-- the *name*: the value has the name of the parameter, or a name listed under `also`;
+- the *name*: value and parameter share a name, their own or one listed under `also`; own names come first;
 - the *role*: a name of general words only, such as `bore` or `width`, does not identify a part; the bore
-of an engine is the bore of its cylinder. So a value with such a name fits only if it has exactly the name
-of the parameter and the ids of template and model share a word.
+of an engine is the bore of its cylinder. So a value with such a name fits only if it is a parameter of the
+design, or of a step, has exactly the name of the parameter, and the ids of template and model share a word.
+Two models of one kind are different parts, so such a name never links them.
 
-A parameter whose default comes from a standard's table, such as the width of a bearing by its designation,
-has its value already. Values of other models are proposed where no step has one: outputs, and parameters that
-are set and do not depend on the target's model.
+The same tests apply to values of steps, of the design and of other models; these are proposed in that order.
+A model gives its outputs and the parameters that are set. No proposal closes a loop, neither with the
+relations of the design nor with another proposal. A parameter whose default comes from a standard's table,
+such as the width of a bearing by its designation, has its value already.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
+from itertools import product
 
 from app.designs.network import Block, Graph
 from app.designs.schemas.designs import Proposal
@@ -34,25 +37,29 @@ NO_SINGLE_VALUE = (Choice, Curve, Profile, Table, Text)
 
 def proposals(graph: Graph) -> list[Proposal]:
     """Return one proposal for every unset model parameter that has a suitable value."""
-    models = [block for block in graph.blocks.values() if block.is_model]
-    candidates = (_proposal(graph, model, name) for model in models for name in model.cls.inputs)
-    return [proposal for proposal in candidates if proposal is not None]
+    proposed: list[Proposal] = []
+    loops = _Loops(graph)
+    for model in (block for block in graph.blocks.values() if block.is_model):
+        for name in model.cls.inputs:
+            if best := _proposal(graph, loops, model, name):
+                source, proposal = best
+                loops.link(model.name, source.block)
+                proposed.append(proposal)
+    return proposed
 
 
-def _proposal(graph: Graph, model: Block, name: str) -> Proposal | None:
+def _proposal(graph: Graph, loops: _Loops, model: Block, name: str) -> tuple[Reference, Proposal] | None:
+    """Return the best value for a parameter, with its proposal; None if there is none."""
     declared = model.cls.inputs[name]
     if name in model.cells or isinstance(declared, Choice) or _is_from_a_table(declared):
         return None
-    for called in (name, *declared.meaning.also):
-        fitting = [
-            s for s in _named(graph, model, name, called) if _fits(graph, s, declared.meaning.accepted)
-        ]
-        if fitting:
+    for called, is_own in product((name, *declared.meaning.also), (True, False)):
+        sources = [*_named(graph, model, name, called, is_own=is_own)]
+        fitting = [one for one in sources if _fits(graph, one, declared.meaning.accepted)]
+        if fitting := [one for one in fitting if not loops.closes(model.name, one)]:
             chosen, *others = sorted(fitting, key=lambda source: not _is_namesake(source, model))
-            relation = f"= {chosen}"
-            return Proposal(
-                target=f"{model.name}.{name}", relation=relation, reason=_reason(model, name, called, others)
-            )
+            reason = _reason(model, name, called, others)
+            return chosen, Proposal(target=f"{model.name}.{name}", relation=f"= {chosen}", reason=reason)
     return None
 
 
@@ -63,44 +70,62 @@ def _reason(model: Block, name: str, called: str, others: list[Reference]) -> st
     return f"{same}, and both are the same kind of quantity{more}"
 
 
-def _named(graph: Graph, model: Block, name: str, called: str) -> Iterator[Reference]:
-    """Yield the values with this name: outputs and inputs of steps first, then parameters of the design."""
-    fitting = [
-        block
-        for block in graph.blocks.values()
-        if not block.is_model
-        and (_tells_its_part(called) or (called == name and _share_a_role(block, model)))
-    ]
-    yield from (Reference(step.name, None, called) for step in fitting if called in step.cls.formulas)
-    yield from (Reference(step.name, None, called) for step in fitting if called in step.cls.inputs)
-    if called in graph.parameters and (_tells_its_part(called) or called == name):
+def _named(graph: Graph, model: Block, name: str, called: str, *, is_own: bool) -> Iterator[Reference]:
+    """Yield the values with this name (`is_own`), or with this other name: of steps, design, models."""
+    tells = _tells_its_part(called)
+    steps = [block for block in graph.blocks.values() if not block.is_model]
+    for step in steps:
+        if tells or (called == name and is_own and _share_a_role(step, model)):
+            yield from _values_called(step, step.cls.inputs, called, is_own=is_own)
+    if is_own and called in graph.parameters and (tells or called == name):
         yield Reference(called)
-    if _tells_its_part(called):
-        yield from _of_models(graph, model, called)
+    for other in graph.blocks.values():
+        if tells and other.is_model and other is not model:
+            yield from _values_called(other, other.cells, called, is_own=is_own)
 
 
-def _of_models(graph: Graph, model: Block, called: str) -> Iterator[Reference]:
-    """Yield the values with this name that other models provide: outputs, and parameters that are set.
-
-    Only models whose names come earlier in the alphabet count.
-    """
-    for _, other in sorted(graph.blocks.items()):
-        if other is model:
-            return  # one direction alone never forms a loop
-        if other.is_model and (called in other.cls.formulas or called in other.cells):
-            if not _depends(graph, other.name, model.name):
-                yield Reference(other.name, None, called)
+def _values_called(
+    block: Block, inputs: Collection[str], called: str, *, is_own: bool
+) -> Iterator[Reference]:
+    """Yield outputs, then inputs, of a block with this name, or with this other name."""
+    for names in (block.cls.formulas, inputs):
+        for name in names:
+            declared = block.cls.formulas.get(name) or block.cls.inputs[name]
+            if name == called if is_own else called in declared.meaning.also:
+                yield Reference(block.name, None, name)
 
 
-def _depends(graph: Graph, name: str, on: str) -> bool:
-    """Return whether a block or parameter depends on a block, directly or through others."""
-    waiting, seen = [name], set[str]()
-    while waiting:
-        one = waiting.pop()
-        seen.add(one)
-        cells = graph.blocks[one].cells.values() if one in graph.blocks else [graph.parameters[one]]
-        waiting += [used.block for cell in cells for used in cell.uses.values() if used.block not in seen]
-    return on in seen
+class _Loops:
+    """The dependencies of a design together with its proposals."""
+
+    def __init__(self, graph: Graph) -> None:
+        self._graph = graph
+        self._sources = {
+            **{name: {used.block for used in cell.uses.values()} for name, cell in graph.parameters.items()},
+            **{
+                name: {used.block for cell in block.cells.values() for used in cell.uses.values()}
+                for name, block in graph.blocks.items()
+            },
+        }
+
+    def link(self, target: str, source: str) -> None:
+        """Add a proposal."""
+        self._sources[target].add(source)
+
+    def closes(self, target: str, source: Reference) -> bool:
+        """Return whether a link from `source` to the model `target` would close a loop.
+
+        A model is one part here: none of its parameters is taken by a model on which it depends.
+        """
+        cell, block = self._graph.cell(source), self._graph.blocks.get(source.block)
+        is_apart = cell is not None and not (block and block.is_model)
+        waiting = [used.block for used in cell.uses.values()] if cell and is_apart else [source.block]
+        seen = set[str]()
+        while waiting:
+            one = waiting.pop()
+            seen.add(one)
+            waiting += self._sources.get(one, set()) - seen
+        return target in seen
 
 
 def _is_from_a_table(declared: object) -> bool:

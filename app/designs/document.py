@@ -249,7 +249,11 @@ def _in_models(raw: Mapping[str, Raw]) -> Mapping[str, Json]:
     return {**rest, "models": {"model": raw["model"]}}
 
 
-def assumed_values(document: Mapping[str, Json]) -> JsonObject:
+StoredDocument = JsonObject
+"""A document as a revision stores it: `Document.model_dump` in JSON mode, by any version of the program."""
+
+
+def assumed_values(document: StoredDocument) -> JsonObject:
     """Return the proposed values that parameters of a stored document still have, by parameter."""
     parameters, proposed = document.get("parameters", {}), document.get("assumed", {})
     return {name: one for name, one in proposed.items() if parameters.get(name) == one["value"]}

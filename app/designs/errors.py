@@ -39,13 +39,19 @@ class DesignReleased(DesignError):
 
 
 class NotConverged(DesignError):
-    """A declared iteration did not converge; `rounds` lists the assumed and measured values of each round."""
+    """A declared iteration did not converge; `rounds` lists the assumed and measured values of each round.
 
-    def __init__(self, through: str, tolerance: float, rounds: Sequence[Mapping[str, Json]]) -> None:
+    `rounded` names the rounded values in the loop.
+    """
+
+    def __init__(
+        self, through: str, tolerance: float, rounds: Sequence[Mapping[str, Json]], rounded: str = ""
+    ) -> None:
         self.rounds = [dict(done) for done in rounds]
         last = rounds[-1]
         super().__init__(
             f"the iteration through {through} did not converge to {tolerance:g} within {len(rounds)} rounds: "
             f"it assumed {last['assumed']:.6g} and measured {last['measured']:.6g} {last['unit']}; "
             "start nearer, allow more rounds, or weaken the feedback"
+            + (f"; {rounded} may alternate between two multiples: take a smaller step" if rounded else "")
         )

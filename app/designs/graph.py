@@ -393,7 +393,10 @@ def _kind(network: Network, kinds: Mapping[str, Kind], cell: Cell) -> Kind:
     if cell.declared is not None:
         for relation in cell.relations:
             _check_target(cell, relation, used)
-    return replace(cell.relations[0].kind(used), literal=False, pi=0, twos=frozenset())
+    kind = replace(cell.relations[0].kind(used), literal=False, pi=0, twos=frozenset())
+    if cell.declared is None:
+        _check_steps(cell, kind, kind.unit)
+    return kind
 
 
 def _check_target(cell: Cell, relation: Relation, used: Mapping[str, Kind]) -> None:
@@ -404,6 +407,13 @@ def _check_target(cell: Cell, relation: Relation, used: Mapping[str, Kind]) -> N
         raise FaultyText("unit_mismatch", message)
     if why := relation.misfit(used, declared.meaning.accepted):
         raise FaultyText("unit_mismatch", f"{cell.name} is in {declared.meaning.unit}{why}")
+    _check_steps(cell, kind_of(declared.meaning.accepted), declared.meaning.unit)
+
+
+def _check_steps(cell: Cell, kind: Kind, shown: str) -> None:
+    for rounding in cell.roundings:
+        if why := rounding.misfit(kind, shown):
+            raise FaultyText("unit_mismatch", f"{cell.name} is in {shown}{why}")
 
 
 LONGEST_PLACE = 200  # characters of the place in a fault

@@ -36,6 +36,7 @@ from templates.core.language.template import Template
 from templates.core.units.nodes import Kind, kind_of
 from templates.core.units.quantity import read_any
 from templates.core.units.relation import Relation
+from templates.core.units.rounding import Rounding
 
 LIMITS = "limits"  # marks a reference to a limit, at the position of an analysis name: film.limits.pressure
 
@@ -58,6 +59,20 @@ class Cell:
     def tests(self) -> Mapping[str, Reference]:
         """Return the choices that the relations test; their results are already resolved."""
         return {name: Reference.parse(name) for relation in self.relations for name in relation.decided_by}
+
+    @cached_property
+    def roundings(self) -> tuple[Rounding, ...]:
+        """Return the rules by which its relations are rounded."""
+        return tuple(one.rounding for one in self.relations if one.rounding is not None)
+
+    @cached_property
+    def calculated(self) -> Cell:
+        """Return the cell without its roundings."""
+        texts = {relation.text: relation.calculated.text for relation in self.relations}
+        items = self.raw if isinstance(self.raw, list) else [self.raw]
+        bare = [texts.get(item.strip(), item) if isinstance(item, str) else item for item in items]
+        raw = bare if isinstance(self.raw, list) else bare[0]
+        return replace(self, raw=raw, relations=tuple(one.calculated for one in self.relations))
 
     @cached_property
     def relations_by_text(self) -> Mapping[str, Relation]:

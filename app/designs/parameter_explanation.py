@@ -8,6 +8,7 @@ from app.calculations import json_values
 from app.designs.analyses import measured_unit
 from app.designs.engine.calculation import Calculation
 from app.designs.network import Block, Cell, Solid, SolidAnalysis
+from app.designs.roundings import rounded_value
 from app.plain import JsonObject
 from app.reference import Reference
 from templates.core.errors import FaultyText
@@ -82,7 +83,8 @@ class Explainer:
         if not cell.relations:
             return {"kind": "given", "typed": cell.raw, "because": []}
         because = [self.of(used) for used in (*cell.uses.values(), *cell.tests.values())]
-        return {"kind": "relation", "relation": cell.raw, **_on_paper(cell), "because": because}
+        rounded = {"rounded": row} if (row := rounded_value(self.calculation, cell)) else {}
+        return {"kind": "relation", "relation": cell.raw, **rounded, **_on_paper(cell), "because": because}
 
     def _declared(self, head: str, tail: str) -> JsonObject:
         cls = self.graph.blocks[head].cls

@@ -9,7 +9,7 @@ from app.calculations.json_values import rendered
 from app.calculations.schemas.evaluations import Output
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository, results, tolerances
-from app.designs.document import Document, merge
+from app.designs.document import Document, StoredDocument, merge
 from app.designs.engine.calculate import calculate
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import judged
@@ -17,7 +17,8 @@ from app.designs.errors import DesignError
 from app.designs.graph import build_graph, raise_if, read_document, resolved, starts
 from app.designs.parameter_explanation import shown
 from app.designs.results import Outcome
-from app.designs.schemas.designs import Change, ParameterChange, Preview, RevisionStep, Status
+from app.designs.roundings import as_member
+from app.designs.schemas.designs import Change, ParameterChange, Preview, RevisionStep, RoundedValue, Status
 from app.designs.variants.checks import checked
 from app.designs.variants.together import Available
 from app.designs.variants.verdict import merged
@@ -31,7 +32,7 @@ from app.solids.analysis_views import output as analysis_output
 from app.solids.rows import built
 from app.solids.schemas.analyses import AnalysisOutput
 from app.storage.database import Database
-from cad.regenerate import as_quantities
+from cad.regenerate import as_typed
 from templates.core.criteria.judgement import Judgement
 from templates.core.errors import Fault
 
@@ -72,11 +73,12 @@ def preview(
     changed = resolved(read_document(merge(head.document, asked.patch)), catalogues)
     catalogues = catalogues.with_drafts(_steps_of(changed))  # a preview saves nothing, so drafts may be used
     new, mismatched = _calculated(database, catalogues, changed)
-    raise_if(new.faults)  # faults of the old document are ignored: the change may correct them
+    # faults of the old document are ignored: the change may correct them
+    raise_if([*new.faults, *tolerances.not_stated_in(new, head.document)])
     old, _ = _calculated(database, catalogues, Document.model_validate(head.document))
     own = judged(new)
     steps = _steps(new, own)
-    outcomes = _variants(database, catalogues, changed, new) if not mismatched else []
+    outcomes = _variants(database, catalogues, changed, new, head.document) if not mismatched else []
     everywhere = merged(own, {outcome.name: outcome.judgements for outcome in outcomes})
     content = Preview(
         revision=head.number,
@@ -87,6 +89,7 @@ def preview(
         },
         warnings=[*_warnings(steps), *tolerances.warnings(changed.model_dump())],
         model_parameters=_model_parameters(old, new, mismatched),
+        **_rounded(new),
     ).in_units(asked.system)
     if asked.worksheet:
         content.steps, content.parameters = previewed(new, steps, asked.system), _values(new)
@@ -101,7 +104,7 @@ def _steps_of(document: Document) -> list[tuple[str, int]]:
 
 
 def _variants(
-    database: Database, catalogues: Catalogues, document: Document, base: Calculation
+    database: Database, catalogues: Catalogues, document: Document, base: Calculation, saved: StoredDocument
 ) -> list[Outcome]:
     """Return the calculated variants of a document.
 
@@ -110,7 +113,8 @@ def _variants(
     InvalidInputs
         With the faults for which a save would refuse the table as well.
     """
-    outcomes, faults = checked(document, base, Available(catalogues, built(database), analysed(database)))
+    available = Available(catalogues, built(database), analysed(database))
+    outcomes, faults = checked(document, base, available, saved)
     raise_if(faults)
     return outcomes
 
@@ -168,6 +172,10 @@ def _warnings(steps: Mapping[str, RevisionStep]) -> list[Warning]:
     ]
 
 
+def _rounded(new: Calculation) -> dict[str, list[RoundedValue]]:
+    return {name: list(map(RoundedValue.model_validate, rows)) for name, rows in as_member(new).items()}
+
+
 def _values(new: Calculation) -> dict[str, Shown]:
     """Return the known values of the design's parameters in their units."""
     names = (name for name in new.graph.parameters if name in new.values)
@@ -194,7 +202,7 @@ def _model_parameters(
 
 def _parameters(calculation: Calculation, model: str) -> dict[str, Shown]:
     shape = calculation.shapes.get(model)
-    quantities = as_quantities(shape) if shape else {}
+    quantities = as_typed(shape) if shape else {}
     return {name: Shown.model_validate(quantity) for name, quantity in quantities.items()}
 
 

@@ -15,6 +15,7 @@ from app.designs.engine.calculation import Calculation
 from app.designs.errors import NotConverged
 from app.designs.graph import Graph, build_graph, raise_if, starts
 from app.designs.results import Outcome
+from app.designs.roundings import between, in_words
 from app.designs.service import REGENERATE, CalculationCache, DocumentCalculation
 from app.designs.variants.checks import row_faults
 from app.designs.variants.solids import Describe, VariantSolids, plain_problem
@@ -156,7 +157,8 @@ class Regeneration:
             for iteration in unsettled:
                 done_before = [done for done in rounds if done["through"] == iteration.through]
                 if len(done_before) >= iteration.limit:
-                    raise NotConverged(iteration.through, iteration.tolerance, done_before)
+                    rounded = _rounded_in_the_loop(calculation.graph, Reference.parse(iteration.through))
+                    raise NotConverged(iteration.through, iteration.tolerance, done_before, rounded)
             calculation = self._calculated(calculation.graph, measured)
 
     def _variants(self, document: Document, base: Calculation, context: JobContext) -> list[Outcome]:
@@ -206,6 +208,12 @@ class Regeneration:
 def _lane(job: Job) -> Lane:
     """Return the lane of a job, so that a quick change never waits for long calculations."""
     return "answers" if job.kind == REGENERATE else "jobs"
+
+
+def _rounded_in_the_loop(graph: Graph, through: Reference) -> str:
+    """Return the rounded values between a measurement and the parameters of its model; empty if none is."""
+    inside = [cell.reference for cell in graph.cells() if cell.reference.block == through.block]
+    return in_words(between(graph, [through], inside).get(through, []))
 
 
 def _measure(calculation: Calculation, iteration: Iteration) -> float:

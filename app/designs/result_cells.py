@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from typing import NotRequired, TypedDict
 
 import numpy as np
 
 from app.designs.analyses import is_table
 from app.designs.engine.calculation import Calculation
 from app.designs.network import Block, Graph, subjects
-from app.plain import JsonObject
 from app.reference import ItemReference, Reference
 from templates.core.errors import FaultyText
 from templates.core.language.spec import Choice
@@ -25,8 +25,17 @@ ARRAY = "it is a list or a curve; choose one of its items, such as `[1]`, or a s
 SINGLE = "it is not a list; omit the number of the item"
 PENDING = "it is not calculated"
 
-Cells = Mapping[str, JsonObject]
-"""The cells of one row by column: value, unit, and the reason for a missing value."""
+
+class TableCell(TypedDict):
+    """A value with its unit, the word of a choice, or null with a reason."""
+
+    value: float | str | None
+    unit: NotRequired[str]
+    reason: NotRequired[str]
+
+
+Cells = Mapping[str, TableCell]
+"""The cells of one row by column."""
 
 
 def columns_of(graph: Graph) -> tuple[ItemReference, ...]:
@@ -66,7 +75,7 @@ def cells(calculation: Calculation) -> Cells:
     return {str(one): _cell(calculation, one) for one in columns_of(calculation.graph)}
 
 
-def _cell(calculation: Calculation, column: ItemReference) -> JsonObject:
+def _cell(calculation: Calculation, column: ItemReference) -> TableCell:
     """Return a value of a design with its unit, or null with a reason."""
     reference = column.reference
     if word := _choice(calculation, reference):

@@ -17,7 +17,7 @@ from pydantic import TypeAdapter
 from sqlalchemy import Text, bindparam, select, type_coerce
 from sqlalchemy.orm import Session
 
-from app.designs.schemas.designs import RevisionStep, Round
+from app.designs.schemas.designs import RevisionStep, Round, RoundedValue
 from app.plain import JsonObject
 from app.schemas.criteria import Criterion, Verdict
 from app.solids.schemas.analyses import ModelAnalysis
@@ -29,6 +29,7 @@ _TEXT = select(type_coerce(RevisionRow.results, Text)).where(
 )
 _JSON = JsonText()
 _ROUNDS = TypeAdapter(list[Round])
+_ROUNDED = TypeAdapter(dict[str | None, list[RoundedValue]])
 _ANALYSES = TypeAdapter(dict[str, dict[str, ModelAnalysis]])
 _JUDGED: Mapping[str, TypeAdapter[list[Criterion] | Verdict | None]] = {
     "criteria": TypeAdapter(list[Criterion] | None),
@@ -47,6 +48,9 @@ class Results:
     analyses: Mapping[str, dict[str, ModelAnalysis]]  # by model and kind
     governing: str = ""  # the variant that governs; empty if the design itself does
     governing_steps: Mapping[str, RevisionStep] = field(default_factory=dict)  # where they differ
+    rounded: Mapping[str | None, list[RoundedValue]] = field(
+        default_factory=dict
+    )  # by variant; None is the design itself
 
     @cached_property
     def digest(self) -> str:
@@ -83,6 +87,13 @@ def _read(text: str) -> Results:
         steps=_steps(plain["steps"]),
         judged={name: kind.validate_python(plain[name]) for name, kind in _JUDGED.items() if name in plain},
         iterations=_ROUNDS.validate_python(plain["iterations"]),
+        rounded=_ROUNDED.validate_python(
+            {
+                variant: one["rounded"]
+                for variant, one in {**plain.get("variants", {}), None: plain}.items()
+                if "rounded" in one
+            }
+        ),
         analyses=_ANALYSES.validate_python(plain.get("analyses", {})),
         governing=governing["variant"],
         governing_steps=_steps(governing["steps"]),

@@ -8,17 +8,17 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import chain
 
 from app.designs.network import Graph
-from app.designs.result_cells import Cells, columns_of
+from app.designs.result_cells import Cells, TableCell, columns_of
 from app.designs.schemas.result_table import Number, ResultColumn, ResultRow, ResultTable
 from app.designs.schemas.variants import GoverningVariant, VariantResult
 from app.designs.variants.names import BASE
-from app.plain import JsonObject
 from app.presentation.criteria import line
 from app.reference import ItemReference, Reference
 from app.schemas.criteria import Criterion
 from templates.core.errors import listed
 
 MOST_DEFAULT = 12
+NOTHING: TableCell = {"value": None}
 EQUAL = 0.005  # relative difference below which two used shares count as equal
 
 
@@ -67,7 +67,8 @@ def _column(name: str, words: str, unit: str | None) -> ResultColumn:
 
 
 def _unit(name: str, rows: Iterable[Cells]) -> str | None:
-    return next((str(cells[name]["unit"]) for cells in rows if cells.get(name, {}).get("unit")), None)
+    units = (cells.get(name, NOTHING).get("unit") for cells in rows)
+    return next((unit for unit in units if unit), None)
 
 
 def _different(names: Sequence[str], rows: Sequence[Cells]) -> list[str]:
@@ -77,16 +78,16 @@ def _different(names: Sequence[str], rows: Sequence[Cells]) -> list[str]:
     differing = {
         Reference.parse(name).block
         for name in names
-        if len({repr(cells.get(name, {}).get("value")) for cells in rows}) > 1
+        if len({repr(cells.get(name, NOTHING).get("value")) for cells in rows}) > 1
     }
     return [name for name in names if Reference.parse(name).block in differing]
 
 
 def _row(row: VariantResult, stored: Cells, names: Sequence[str]) -> ResultRow:
-    values: list[Number] = [stored.get(name, {}).get("value") for name in names]
-    reasons = {name: str(stored[name]["reason"]) for name in names if stored.get(name, {}).get("reason")}
+    values: list[Number] = [stored[name]["value"] if name in stored else None for name in names]
+    reasons = {name: reason for name in names if (reason := stored.get(name, NOTHING).get("reason"))}
     criterion = governing_criterion(row)
-    parts: JsonObject = {
+    parts: dict[str, object] = {
         "reasons": reasons,
         "verdict": row.verdict.verdict if row.verdict else None,
         "criterion": criterion.name if criterion else None,
@@ -95,7 +96,8 @@ def _row(row: VariantResult, stored: Cells, names: Sequence[str]) -> ResultRow:
         "error_unknown": bool(criterion and line(criterion).is_error_unknown),
         "problem": row.problem.detail if row.problem else None,
     }
-    return ResultRow(name=row.name, values=values, **{name: part for name, part in parts.items() if part})
+    present = {name: part for name, part in parts.items() if part}
+    return ResultRow.model_validate({"name": row.name, "values": values, **present})
 
 
 def governing_criterion(row: VariantResult) -> Criterion | None:

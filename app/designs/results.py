@@ -15,6 +15,7 @@ from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import judged
 from app.designs.network import Block
 from app.designs.result_cells import cells
+from app.designs.roundings import ROUNDED, RoundedValue, as_member, rounded
 from app.designs.variants.names import BASE
 from app.designs.variants.verdict import VARIANT, merged
 from app.designs.worksheet import remember
@@ -22,7 +23,7 @@ from app.plain import Json, JsonObject, Raw
 from app.pool.cost import EXPENSIVE
 from app.solids.analysis_views import in_design
 from cad.model import CadModel
-from cad.regenerate import as_quantities, build_key
+from cad.regenerate import as_typed, build_key
 from templates.core.criteria.judgement import Judgement
 from templates.core.criteria.summary import worst_first
 from templates.core.errors import Fault
@@ -52,23 +53,24 @@ def stored(
     own = judged(calculation)
     criteria = merged(own, {one.name: one.judgements for one in outcomes}) if outcomes else own
     results = {
+        **as_member(calculation),
         "steps": steps(calculation, criteria),
         "iterations": rounds,
         "analyses": analyses(calculation),
         **rendered(criteria),
     }
-    results[TABLE] = {BASE: cells(calculation)} | {
-        outcome.name: cells(outcome.calculation) for outcome in outcomes if outcome.calculation
-    }
     if outcomes:
-        base = _variant({}, own, single_outputs(calculation), {}, None)
+        results[TABLE] = {BASE: cells(calculation)} | {
+            outcome.name: cells(outcome.calculation) for outcome in outcomes if outcome.calculation
+        }
+        base = _variant({}, own, single_outputs(calculation), {}, None, rounded(calculation))
         results[VARIANTS] = {BASE: base, **{outcome.name: _outcome(outcome) for outcome in outcomes}}
         results |= _governing(criteria, outcomes, results["steps"])
     return results
 
 
 def _governing(
-    criteria: Sequence[Judgement], outcomes: Sequence[Outcome], own: Mapping[str, JsonObject]
+    criteria: Sequence[Judgement], outcomes: Sequence[Outcome], own: Mapping[str, object]
 ) -> JsonObject:
     """Return the steps of the governing variant that differ from the design's own, for its report.
 
@@ -150,7 +152,7 @@ def _model(calculation: Calculation, block: Block) -> ModelState:
         name=block.name,
         id=block.cls.id,
         version=block.cls.version,
-        parameters=as_quantities(shape) if shape else {},
+        parameters=as_typed(shape) if shape else {},
         relations={n: cell.raw for n, cell in block.cells.items() if cell.relations},
         missing=tuple(calculation.missing.get(block.name, ())),
         build=build_key(shape) if shape else None,
@@ -158,7 +160,14 @@ def _model(calculation: Calculation, block: Block) -> ModelState:
 
 
 def _outcome(outcome: Outcome) -> JsonObject:
-    return _variant(outcome.values, outcome.judgements, outcome.outputs, outcome.failures, outcome.problem)
+    return _variant(
+        outcome.values,
+        outcome.judgements,
+        outcome.outputs,
+        outcome.failures,
+        outcome.problem,
+        rounded(outcome.calculation) if outcome.calculation else [],
+    )
 
 
 def _variant(
@@ -167,6 +176,7 @@ def _variant(
     outputs: Mapping[str, JsonObject],
     failures: Mapping[str, JsonObject],
     problem: JsonObject | None,
+    chosen: Sequence[RoundedValue],
 ) -> JsonObject:
     """Return one variant in the form that a revision stores, without empty members."""
     parts: JsonObject = {
@@ -174,6 +184,7 @@ def _variant(
         "outputs": dict(outputs),
         "failures": dict(failures),
         "problem": problem,
+        ROUNDED: list(chosen),
     }
     return {**{name: part for name, part in parts.items() if part}, **rendered(worst_first(judgements))}
 

@@ -2,7 +2,7 @@
 
 The slopes are central differences at the design point: 1 + 2 n rows in one array call, at the levels that the
 design used. A quantity that acts through a solid gets a reason instead of a slope, because each of its values
-needs another solid.
+needs another solid; so does one that acts through a rounded value, because the result changes in steps.
 """
 
 from __future__ import annotations
@@ -21,8 +21,9 @@ from app.designs.engine.calculation import Calculation
 from app.designs.engine.design_engine import DesignEngine, Table
 from app.designs.engine.relations import MOST_OPERATIONS
 from app.designs.engine.row_design import MOST_VALUES, Targets
-from app.designs.network import Subject
+from app.designs.network import Cell, Subject
 from app.designs.origins import literals_behind, measures_behind, through_solids
+from app.designs.roundings import between, in_words
 from app.designs.schemas.designs import Sensitivity
 from app.designs.slopes import Local, Slopes, slope_in, slopes_at
 from app.pool.cost import EXPENSIVE
@@ -91,11 +92,14 @@ def sensitivities(
     wanted = asked.wanted
     behind = literals_behind(calculation, [*wanted.references, *wanted.inside])
     solids = through_solids(calculation.graph, wanted)
-    apart = {*solids, *asked.values}
+    places_behind = [cell.reference for cell in behind if cell.reference not in solids]
+    steps = between(calculation.graph, places_behind, [*wanted.references, *wanted.inside])
+    apart = {*solids, *steps, *asked.values}
     places = [cell.reference for cell in behind if cell.reference not in apart]
     through = [
         _of_solid(cell.name, solids[cell.reference].name) for cell in behind if cell.reference in solids
     ]
+    through += [_of_rounding(str(place), cells) for place, cells in steps.items()]
     try:
         surroundings = DifferenceRows(document, calculation, catalogues, asked, places[:MOST_VARIED])
         items = sorted(surroundings.items(), key=_rank) if places else []
@@ -107,6 +111,11 @@ def sensitivities(
 
 def _of_solid(place: str, model: str) -> Sensitivity:
     reason = f"it acts through the solid of {model}, which would have to be rebuilt for each value"
+    return Sensitivity(name=place, reason=reason)
+
+
+def _of_rounding(place: str, cells: Sequence[Cell]) -> Sensitivity:
+    reason = f"it acts through {in_words(cells)}, so the value changes in steps and has no slope"
     return Sensitivity(name=place, reason=reason)
 
 

@@ -11,9 +11,9 @@ from sqlalchemy.orm import Session
 
 from app.calculations.cache import Cache
 from app.catalogue.catalogues import Catalogues
-from app.designs import repository, results, views
+from app.designs import repository, results, tolerances, views
 from app.designs.automap import proposals
-from app.designs.document import Document, merge
+from app.designs.document import Document, StoredDocument, merge
 from app.designs.drives import network
 from app.designs.engine.calculate import calculate
 from app.designs.engine.calculation import Calculation
@@ -133,6 +133,15 @@ class Designs:
         with self.database.read() as session:
             return views.newest(session, id, number)
 
+    def with_results(self, design: Design) -> Design:
+        """Return a design with the results of its revision, if it has any."""
+        if design.state != "current":
+            return design
+        with self.database.read() as session:
+            row = repository.lean(session, design.id, design.revision)
+            results = views.results(session, row)
+        return design.model_copy(update={"results": results}) if results else design
+
     def network(self, id: str) -> DesignNetwork:
         """Return the dependencies in a design.
 
@@ -146,9 +155,14 @@ class Designs:
         return network(document, self.catalogues)
 
     def create(
-        self, raw: Mapping[str, Raw], note: str | None, once: Once, action: str = "design.create"
+        self,
+        raw: Mapping[str, Raw],
+        note: str | None,
+        once: Once,
+        action: str = "design.create",
+        saved: StoredDocument | None = None,
     ) -> SaveResult:
-        """Create a design and return its first revision.
+        """Create a design, perhaps from a `saved` document, and return its first revision.
 
         Raises
         ------
@@ -157,7 +171,7 @@ class Designs:
         """
         if before := once.find_in(self.database):
             return _saved_before(before)
-        draft = self.draft(raw, note, action)
+        draft = self.draft(raw, note, action, saved)
 
         def unit(session: Session) -> SaveResult:
             if before := once.begin(session):
@@ -190,7 +204,8 @@ class Designs:
                 return _saved_before(before)
             base = repository.newest(session, id)
         _require_match(expected, base.number)
-        return self._append(id, base, merge(base.document, patch), note, once, "design.change")
+        changed = merge(base.document, patch)
+        return self._append(id, base, changed, note, once, "design.change", base.document)
 
     def restore(self, id: str, number: int, note: str | None, expected: str | None, once: Once) -> SaveResult:
         """Create a revision with the document of an old one, and return it."""
@@ -201,14 +216,14 @@ class Designs:
             document = repository.document(session, id, number)
         _require_match(expected, base.number)
         words = note or f"as revision {number}"
-        return self._append(id, base, document, words, once, "design.restore")
+        return self._append(id, base, document, words, once, "design.restore", document)
 
     def copy(self, id: str, name: str | None, once: Once) -> SaveResult:
         """Create a design with the newest document of another one, and return it."""
         with self.database.read() as session:
             number, document, *_ = repository.newest(session, id)
         named = {**document, "name": name or f"{document['name'][:190]} (copy)"}
-        return self.create(named, f"copy of {id}, revision {number}", once, "design.copy")
+        return self.create(named, f"copy of {id}, revision {number}", once, "design.copy", document)
 
     def delete(self, id: str) -> None:
         """Delete a design from the lists; its revisions are kept.
@@ -271,9 +286,10 @@ class Designs:
         note: str | None,
         once: Once,
         action: str,
+        saved: StoredDocument,
     ) -> SaveResult:
         """Return the revision after `base` with another document, or `base` if the document is unchanged."""
-        draft = self.draft(raw, note, action)
+        draft = self.draft(raw, note, action, saved)
         is_changed = base.document != draft.written.document
 
         def unit(session: Session) -> SaveResult:
@@ -320,8 +336,12 @@ class Designs:
         except _UsualWay:
             return None
 
-    def draft(self, raw: Mapping[str, Raw], note: str | None, action: str) -> Draft:
+    def draft(
+        self, raw: Mapping[str, Raw], note: str | None, action: str, saved: StoredDocument | None = None
+    ) -> Draft:
         """Return the revision to save for a document; a job adds its results if a value is pending.
+
+        A tolerance that no file would state is a fault, unless the `saved` document has it already.
 
         Raises
         ------
@@ -329,8 +349,8 @@ class Designs:
             With all faults.
         """
         document, calculation = self.prepare(raw)
-        raise_if(calculation.faults)
-        outcomes = self._variants(document, calculation)
+        raise_if([*calculation.faults, *tolerances.not_stated_in(calculation, saved)])
+        outcomes = self._variants(document, calculation, saved)
         waits = bool(outcomes) and any(outcome.is_pending for outcome in outcomes)
         pending = bool(document.iterations) or bool(calculation.pending) or waits
         stored = None if pending else results.stored(calculation, [], outcomes)
@@ -344,7 +364,7 @@ class Designs:
         written = StoredRevision(plain, stored, results.models(calculation, outcomes), state, note, action)
         return Draft(written, _kind(calculation.graph, is_deferred), is_deferred, begun_steps())
 
-    def _variants(self, document: Document, base: Calculation) -> list[Outcome]:
+    def _variants(self, document: Document, base: Calculation, saved: StoredDocument | None) -> list[Outcome]:
         """Return the variants of a document, as far as they can be calculated now.
 
         Raises
@@ -352,16 +372,18 @@ class Designs:
         InvalidInputs
             With all faults of the table.
         """
-        outcomes, faults = self._checked(document, base)
+        outcomes, faults = self._checked(document, base, saved)
         raise_if(faults)
         return outcomes
 
-    def _checked(self, document: Document, base: Calculation) -> tuple[list[Outcome], list[Fault]]:
+    def _checked(
+        self, document: Document, base: Calculation, saved: StoredDocument | None
+    ) -> tuple[list[Outcome], list[Fault]]:
         if not document.variants:
             return [], []
-        return checked(document, base, Available(self.catalogues, *self._solids))
+        return checked(document, base, Available(self.catalogues, *self._solids), saved)
 
-    def faulty_variants(self, raw: Mapping[str, Raw]) -> list[Fault]:
+    def faulty_variants(self, raw: Mapping[str, Raw], saved: StoredDocument) -> list[Fault]:
         """Return all faults of a document's variants that would prevent a save.
 
         Raises
@@ -370,7 +392,7 @@ class Designs:
             If the document itself has faults.
         """
         document, calculation = self.prepare(raw)
-        return self._checked(document, calculation)[1]
+        return self._checked(document, calculation, saved)[1]
 
     def _enqueued(
         self, session: Session, design: str, revision: int, draft: Draft, once: Once, *, created: str, at: str

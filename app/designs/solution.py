@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Annotated
 
 import numpy as np
@@ -16,7 +16,9 @@ from app.designs.engine.calculate import calculate
 from app.designs.engine.design_engine import DesignEngine
 from app.designs.engine.verdicts import judged
 from app.designs.graph import build_graph, starts
+from app.designs.network import Cell
 from app.designs.overrides import changed
+from app.designs.roundings import between, in_words, without
 from app.designs.schemas.solution import DesignRoot, DesignSolution, Target
 from app.designs.solution_search import DesignRoots, RootQuestion, roots_of_design
 from app.designs.tasks import DesignTask
@@ -101,8 +103,11 @@ def solved(task: DesignTask, revision: int, body: str) -> DesignSolution:
         detail = "the first bound must be below the second"
         raise InvalidInputs([Fault("between", "not_ascending", detail)])
     value = _single(read_beside, raw, engine.accepted(target), f"target.{name}")
-    solution = roots_of_design(engine, RootQuestion(unknown, (low, high), target, value, question.tolerance))
-    return _SolutionText(solution, document, catalogues).answer(revision)
+    steps = between(engine.graph, [unknown], [target]).get(unknown, [])
+    free = DesignEngine.of(without(document, steps), catalogues, [unknown], wanted=[target], pending=True)
+    asked = RootQuestion(unknown, (low, high), target, value, question.tolerance)
+    solution = roots_of_design(free if steps else engine, asked)
+    return _SolutionText(solution, document, catalogues, engine, steps).answer(revision)
 
 
 def _single(read_as: Callable[[object, str], TypedQuantity], raw: object, unit: str, name: str) -> float:
@@ -119,8 +124,16 @@ def _single(read_as: Callable[[object, str], TypedQuantity], raw: object, unit: 
 class _SolutionText:
     """The solutions of a design as a response."""
 
-    def __init__(self, solution: DesignRoots, document: Document, catalogues: Catalogues) -> None:
+    def __init__(
+        self,
+        solution: DesignRoots,
+        document: Document,
+        catalogues: Catalogues,
+        engine: DesignEngine,
+        steps: Sequence[Cell],
+    ) -> None:
         self.solution, self.document, self.catalogues = solution, document, catalogues
+        self.engine, self.steps = engine, steps
         self.curve = solution.scanned
         self.x, self.y = self.curve.x.unit, self.curve.y.unit
 
@@ -143,6 +156,7 @@ class _SolutionText:
                     if w.code != "several_solutions"  # `roots` lists them all
                 ),
                 *self._missed_tolerance(),
+                *self._roundings(),
             ],
             levels=dict(self.curve.levels),
             finer_levels=dict(self.solution.requested.levels) if roots.finer else {},
@@ -169,6 +183,25 @@ class _SolutionText:
         )
         yield Warning(code="tolerance_unmet", name=self.curve.y.name, detail=f"{detail}{self._kept_level()}")
 
+    def _roundings(self) -> Iterator[Warning]:
+        """Yield a warning if values between the unknown and the target are rounded."""
+        if self.steps:
+            detail = (
+                f"solved with the calculated values of {in_words(self.steps)}; `rounded` of each solution is "
+                f"{self.curve.y.name} with the chosen values"
+            )
+            yield Warning(code="rounded", name=self.curve.y.name, detail=detail)
+
+    def _rounded(self, value: float) -> dict[str, Shown]:
+        """Return the target with the chosen values as the member `rounded`; empty if nothing is rounded."""
+        if not self.steps:
+            return {}
+        rows = {self.solution.scanned.unknown: np.array([self.curve.x.scale.to_si(value)])}
+        target = self.solution.scanned.target
+        table = self.engine(rows, [target], levels=self.solution.requested.levels)
+        chosen = float(self.curve.y.scale.from_si(table.columns[target][0]))
+        return {"rounded": Shown(value=chosen if math.isfinite(chosen) else None, unit=self.y)}
+
     def _kept_level(self) -> str:
         """Return a remark that the design fixes the level of the target's step; empty if it does not."""
         step = self.document.steps.get(self.solution.scanned.target.block)
@@ -188,6 +221,7 @@ class _SolutionText:
             level=root.level,
             error=root.error,
             confirmed=root.confirmed,
+            **self._rounded(root.value),
             verdicts={one.name: one.verdict for one in judgements},
             error_unknown=[one.name for one in judgements if one.is_open and one.verdict != "undecided"],
         )

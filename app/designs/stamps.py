@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.designs import repository, statements
+from app.designs.result_records import results_of
+from app.designs.schemas.designs import RoundedValue
 from app.identity.principal import LOCAL
 from app.plain import Json
+from app.presentation.numbers import rounded
+from app.reference import Reference
 from app.schemas.approval_steps import ORDER
 from app.solids import rows
 from app.storage.tables import ApprovalRow, PrincipalRow, RevisionModelRow
@@ -52,7 +56,16 @@ def signed(session: Session, model: RevisionModelRow, owner: str) -> Stamp:
         author=names.get("calculated") or (author.name if author else ""),
         checker=names.get("checked", ""),
         approver=names.get("released", ""),
+        rounded=_rounded(results_of(session, revision).rounded.get(model.variant, []), model.own_name),
         status=next((step for step in reversed(ORDER) if step in names), "unsigned"),
+    )
+
+
+def _rounded(values: Iterable[RoundedValue], model: str) -> str:
+    """Return the rounded parameters of a model on one line; empty if there are none."""
+    own = ((Reference.parse(value.name), value) for value in values)
+    return "; ".join(
+        f"{place.member.replace('_', ' ')}: {rounded(value)}" for place, value in own if place.block == model
     )
 
 

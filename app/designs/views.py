@@ -9,7 +9,7 @@ from sqlalchemy.orm import Session
 from app.designs import releases, repository, tolerances
 from app.designs.document import assumed_values
 from app.designs.result_records import results_of
-from app.designs.schemas.designs import Design, DesignSummary, ModelMeasurements, Revision
+from app.designs.schemas.designs import Design, DesignResults, DesignSummary, ModelMeasurements, Revision
 from app.designs.variants.names import natural
 from app.identity.rows import names
 from app.identity.schemas.principals import Author
@@ -107,10 +107,14 @@ def revision(session: Session, row: RevisionRow) -> Revision:
             **_heading(session, row),
             "steps": {name: results.steps.get(name) or _waiting(step) for name, step in steps.items()},
             "models": {
-                model.name: {**_model(session, model), "analyses": results.analyses.get(model.name, {})}
+                model.name: {
+                    **_model(session, model, row.document),
+                    "analyses": results.analyses.get(model.name, {}),
+                }
                 for model in models
             },
             "iterations": results.iterations,
+            **({"rounded": results.rounded[None]} if None in results.rounded else {}),
             **({"warnings": unused} if (unused := tolerances.warnings(row.document)) else {}),
             **results.judged,
         }
@@ -118,13 +122,29 @@ def revision(session: Session, row: RevisionRow) -> Revision:
 
 
 def governing(session: Session, row: RevisionRow) -> tuple[str, Revision]:
-    """Return the variant that governs, and the revision with the steps of this variant.
+    """Return the variant that governs, and the revision with the steps and rounded values of this variant.
 
     The name is empty if the design itself governs.
     """
     results, own = results_of(session, row), revision(session, row)
     steps = {**own.steps, **results.governing_steps}
-    return results.governing, own.model_copy(update={"steps": steps})
+    rounded = results.rounded.get(results.governing or None, [])
+    return results.governing, own.model_copy(update={"steps": steps, "rounded": rounded})
+
+
+def results(session: Session, row: RevisionRow) -> DesignResults | None:
+    """Return the single outputs and the judged criteria of a revision; None if it has no results."""
+    kept = results_of(session, row)
+    if kept.text is None:
+        return None
+    outputs = {
+        f"{step}.{name}": output
+        for step, one in kept.steps.items()
+        for name, output in one.outputs.items()
+        if not isinstance(output.value, list)
+    }
+    judged = {name: part for name, part in kept.judged.items() if part is not None}
+    return DesignResults.model_validate({"outputs": outputs, **judged})
 
 
 def summary(session: Session, row: RevisionRow) -> Revision:
@@ -166,8 +186,11 @@ def _waiting(typed: JsonObject) -> JsonObject:
     return {"template": template, "inputs": typed["inputs"], **empty, "pending": True}
 
 
-def _model(session: Session, row: RevisionModelRow) -> JsonObject:
+def _model(session: Session, row: RevisionModelRow, document: JsonObject) -> JsonObject:
+    build = rows.build(session, row.build_key) if row.build_key else None
+    stated = tolerances.stated(row, build, document["models"][row.name]["parameters"]) if build else {}
     return {
+        **({"tolerances": stated} if stated else {}),
         "id": row.model,
         "version": row.model_version,
         "parameters": row.parameters,

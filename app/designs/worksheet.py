@@ -54,6 +54,8 @@ def worksheet(
     fields = {name: getattr(revision, name) for name in revision.model_fields_set}
     if revision.criteria is not None:
         fields["criteria"] = [criterion.in_units(system) for criterion in revision.criteria]
+    if revision.rounded:
+        fields["rounded"] = [value.in_units(system) for value in revision.rounded]
     return RevisionWorksheet.model_validate({**fields, "steps": steps, "models": models})
 
 

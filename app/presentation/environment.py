@@ -69,6 +69,7 @@ def environment(folder: Path) -> Environment:
         "rough": numbers.rough,
         "in_line": numbers.in_line,
         "as_typed": text_of,
+        "rounded": numbers.rounded,
         "course": course,
         "reference": Reference.parse,
     }

@@ -102,6 +102,23 @@ def in_line(quantity: object) -> str:
     return _written(quantity)
 
 
+class Rounded(Protocol):
+    """A value before and after the rounding of its relation."""
+
+    @property
+    def calculated(self) -> object:
+        """Return the quantity before the rounding."""
+
+    @property
+    def chosen(self) -> object:
+        """Return the quantity after it."""
+
+
+def rounded(value: Rounded) -> str:
+    """Return a rounded value on one line: `calculated 23.47 mm → chosen 23.5 mm`."""
+    return f"calculated {in_line(value.calculated)} → chosen {in_line(value.chosen)}"
+
+
 def _line(quantity: Mapping[str, object]) -> str:
     if quantity["value"] is None:
         return str(quantity.get("reason") or "none")

@@ -154,6 +154,14 @@ class PaintedField:
 
 
 @dataclass(frozen=True)
+class ToleranceLine:
+    """A parameter with a tolerance, and where the files of its model state it."""
+
+    words: str
+    detail: str
+
+
+@dataclass(frozen=True)
 class Model:
     """A CAD model of the design."""
 
@@ -163,6 +171,7 @@ class Model:
     build: str
     compared: str  # the revision used for comparison
     parameters: list[MappedParameter]
+    tolerances: list[ToleranceLine]
     measures: list[Line]
     analyses: list[Line]  # finite-element results; the origin states how
     warnings: list[StepWarning]
@@ -256,5 +265,6 @@ class Report:
     steps: list[Step]
     models: list[Model]
     rounds: list[Round] = field(default_factory=list)
+    rounded: list[Line] = field(default_factory=list)
     variants: Variants | None = None
     author: str = ""  # who saved the revision; empty on a service without keys

@@ -15,7 +15,16 @@ from app.presentation import numbers
 from app.presentation.numbers import in_line
 from app.presentation.units import System
 from app.reports.cells import NOTHING, cell, typed
-from app.reports.content import File, Line, MappedParameter, Model, PaintedField, Rule, StepWarning
+from app.reports.content import (
+    File,
+    Line,
+    MappedParameter,
+    Model,
+    PaintedField,
+    Rule,
+    StepWarning,
+    ToleranceLine,
+)
 from app.reports.steps import class_of, relation_mathml, rules, symbol_of, version_of, words_of
 from app.reports.typesetting import DRAWING, PICTURE
 from app.schemas.answers import Quantity, Shown
@@ -55,6 +64,7 @@ def model_of(
         build=model.build or "",
         compared=f"revision {before.number}" if before else "",
         parameters=[*_parameters(model, before.parameters if before else {}, measured, cls, system)],
+        tolerances=[ToleranceLine(words_of(n, cls), one.detail) for n, one in model.tolerances.items()],
         measures=[*_measures(measured, system)] if measured else [],
         analyses=[*_analyses(model.analyses, system)],
         warnings=_warnings(model.analyses),

@@ -24,6 +24,7 @@ from app.designs.variants.table import applied
 from app.designs.variants.views import variants
 from app.designs.worksheet import worksheet
 from app.plain import JsonObject
+from app.presentation.numbers import rounded
 from app.presentation.units import System
 from app.reports.cells import Cell, cell, clean, typed
 from app.reports.content import Line, Model, Report, Round, Step
@@ -142,7 +143,7 @@ class Reports:
         verdict = replace(report.verdict, criteria=[], governing=table.governing)
         signatures = of_variants(report.signatures, has_appendix=has_appendix)
         if not has_appendix:
-            report = replace(report, steps=[], models=[], rounds=[])
+            report = replace(report, steps=[], models=[], rounds=[], rounded=[])
         return replace(report, verdict=verdict, variants=table, signatures=signatures)
 
     def gather(self, id: str, number: int, system: System, *, pending: bool) -> Report:
@@ -200,6 +201,7 @@ class Reports:
             steps=steps,
             models=models,
             rounds=[_round(one) for one in worked.iterations],
+            rounded=[Line(one.name, "", Cell(text=rounded(one)), origin=one.rule) for one in worked.rounded],
             author=author_of(revision.author, signed),
         )
 

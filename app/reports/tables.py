@@ -11,7 +11,7 @@ import csv
 import io
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 from itertools import chain, count, zip_longest
 from typing import TYPE_CHECKING, cast
@@ -20,6 +20,7 @@ from app.calculations.schemas.evaluations import Output, UsedInput
 from app.designs.schemas.designs import RevisionModel, RevisionStep, RevisionWorksheet
 from app.plain import Raw
 from app.presentation.input_text import text_of
+from app.presentation.numbers import rounded
 from app.presentation.spreadsheets import Value, harmless, put, without_illegal
 from app.schemas.answers import Shown
 from app.solids.schemas.analyses import AnalysisOutput
@@ -67,6 +68,14 @@ def of(worksheet: RevisionWorksheet) -> Table:
 
 
 def _rows(worksheet: RevisionWorksheet) -> Iterator[Row]:
+    remarks = {value.name: rounded(value) for value in worksheet.rounded}
+    for row in _quantities(worksheet):
+        name = row.name if row.block == "design" else f"{row.block}.{row.name}"
+        is_set = row.kind in ("parameter", "input", "dimension")
+        yield replace(row, remark=remarks[name]) if is_set and name in remarks else row
+
+
+def _quantities(worksheet: RevisionWorksheet) -> Iterator[Row]:
     for name, raw in worksheet.parameters.items():
         yield Row("design", "parameter", name, *_read(raw), "given", "")
     for block, step in worksheet.steps.items():

@@ -20,7 +20,8 @@ FORMS: list[JsonValue] = [
 ]
 GIVEN: JsonDict = {
     "description": 'a quantity, `"25 kN"`, `"25 ± 1 kN"` or `{"value": 25, "unit": "kN"}`; a number of '
-    "unit 1; a choice",
+    "unit 1; a choice. A tolerance of a model that no face can carry ends with `, in table`, or has "
+    "`state_in_table` in an object",
     "anyOf": FORMS,
 }
 Given = Annotated[object, WithJsonSchema(GIVEN)]

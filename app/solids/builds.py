@@ -15,7 +15,7 @@ from sqlalchemy.orm import Session
 
 from app.imported_models.programs import Programs
 from app.pool.sources import FileSource, Source, loaded, source_of
-from app.solids import measures, rows
+from app.solids import measures, rows, stated_tolerances
 from app.solids.rows import is_fresh, renew
 from app.solids.shapes import built_by_another, shape_of
 from app.storage.artifacts import Artifacts
@@ -23,8 +23,8 @@ from app.storage.database import Database
 from app.storage.errors import CannotRebuild
 from app.workers.base import Runner, may_share
 from cad.errors import AnalysisError, GeometryError, ProgramMissing
-from cad.export import DRAWINGS, derive
-from cad.file_kinds import plain_kind
+from cad.export import derive
+from cad.file_kinds import DRAWINGS, plain_kind
 from cad.imported_models import ImportedModel, ProgramResult, imported_description
 from cad.model import CadModel
 from cad.regenerate import (
@@ -149,6 +149,7 @@ class Builds:
             "measures": build.measures,
             "dimensions": dimensions,
             "materials": build.materials,
+            stated_tolerances.MEMBER: stated_tolerances.recorded(build.tolerances),
         }
         if described := imported_description(type(shape)):
             measured["trust"] = described.trust

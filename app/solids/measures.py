@@ -24,6 +24,7 @@ def measurements(
     materials: Mapping[str, str] | None = None,
     trust: str | None = None,
     clearances: Sequence[Mapping[str, object]] = (),
+    **_others: object,
 ) -> Measurements:
     """Return the measurements of a solid; builds of an older recipe have fewer measurements."""
 

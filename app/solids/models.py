@@ -11,7 +11,7 @@ from sqlalchemy.orm import Session
 from app.catalogue.catalogues import Catalogues
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
 from app.schemas.answers import Shown, Version
-from app.solids import measures, rows
+from app.solids import measures, rows, stated_tolerances
 from app.solids.builds import Builds
 from app.solids.rows import is_fresh, renew
 from app.solids.schemas.models import Build, BuildUse, StepStatement, Verification
@@ -108,7 +108,9 @@ class Models:
             row = rows.build(session, key)
             if row is None:
                 raise NotFound(f"there is no build {key[:80]!r}")
+            tolerances = stated_tolerances.of_build(row.measurements, row.parameters)
             return Build(
+                **({"tolerances": tolerances} if tolerances else {}),
                 build=key,
                 model=Version(id=row.model, version=row.version),
                 parameters={name: Shown.model_validate(value) for name, value in row.parameters.items()},

@@ -16,8 +16,8 @@ from templates.core.arrays import Array, Integers
 
 SETTLED = {
     "settled": "prediction and confirmed values agree, and all required criteria are met",
-    "unconfirmed": "all required criteria are met, but the error of the confirming levels is unknown",
-    "undecided": "a limit lies within the error of the confirming levels",
+    "unconfirmed": "the best row meets all required criteria, but the error of its confirmation is unknown",
+    "undecided": "the best row lies so near a limit that the error of its confirmation decides",
     "infeasible": "no examined row meets all criteria",
     "not_settled": "the search has not converged",
 }

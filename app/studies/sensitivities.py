@@ -6,6 +6,8 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+from app.designs.engine.design_engine import DesignEngine
+from app.designs.roundings import between, in_words
 from app.designs.slopes import Local, slope_in
 from app.reference import Reference
 from app.schemas.answers import Quantity
@@ -53,7 +55,21 @@ def sensitivities(task: Task, columns: Mapping[str, Array]) -> Shares:
             notes += [fault.detail for fault in error.faults]
         else:
             shares[output] = dict(zip(task.varied, listed, strict=True))
+            if isinstance(points, Local):
+                notes += _without_slopes(ready.engine, output, shares[output])
     return Shares(shares, notes)
+
+
+def _without_slopes(engine: DesignEngine, output: str, shares: dict[str, Index]) -> list[str]:
+    """Remove the slopes over places that act through rounded values, and return the reasons."""
+    places = [Reference.parse(place) for place in shares]
+    steps = between(engine.graph, places, [Reference.parse(output)])
+    for place in steps:
+        shares[str(place)] = Index()
+    return [
+        f"{output} has no slope over {place}, which acts through {in_words(cells)}: it changes in steps"
+        for place, cells in steps.items()
+    ]
 
 
 def _indices(

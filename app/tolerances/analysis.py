@@ -5,7 +5,7 @@ This runs in a calculation process. Each step has the same level in all rows.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -15,6 +15,7 @@ from app.designs.document import Document
 from app.designs.engine.design_engine import DesignEngine, Refusal, Table
 from app.designs.engine.needs import needs
 from app.designs.graph import Catalogues, Graph, build_graph, raise_if
+from app.designs.roundings import between, in_words, with_chosen_sizes
 from app.reference import Reference
 from app.schemas.answers import Warning
 from app.tolerances.criteria import CriterionVariable, demanded
@@ -87,8 +88,10 @@ class Analysis:
         InvalidInputs
             With all faults of the design and the request.
         """
-        graph, wrong = build_graph(document, catalogues)
+        written, wrong = build_graph(document, catalogues)
         raise_if(wrong)
+        document = with_chosen_sizes(document, catalogues)
+        graph, _ = build_graph(document, catalogues)
         every = demanded(graph)
         raise_if([*_faults(graph, question, every)])
         named = every if question.criteria is None else {n: every[n] for n in question.criteria}
@@ -96,6 +99,7 @@ class Analysis:
         wanted = {*outputs, *(r for demand in named.values() for r in demand.references)}
         chosen, warnings = varied(graph, needs(graph, wanted, ()).cells)
         raise_if(list(faults(chosen, warnings)))
+        warnings += _held(written, [one.reference for one in chosen], wanted)
         engine = DesignEngine.of(
             document, catalogues, [v.reference for v in chosen], wanted=wanted, pending=True
         )
@@ -203,6 +207,16 @@ class Analysis:
             remedy = 'name cheaper ones, for example `"levels": {"film": "map"}`, or ask for fewer points'
             detail = f"{rows} rows at these levels ({levels}) take too long to calculate; {remedy}"
             raise_if([Fault("levels", "too_expensive", detail)])
+
+
+def _held(graph: Graph, places: Collection[Reference], wanted: Collection[Reference]) -> list[Warning]:
+    """Return a warning for each rounded value that would follow a toleranced one."""
+    cells = {cell.name: cell for one in between(graph, places, wanted).values() for cell in one}
+    detail = "it is chosen once, so all products have the chosen value of the design"
+    return [
+        Warning(code="held", name=name, detail=f"{in_words([cell])}: {detail}")
+        for name, cell in cells.items()
+    ]
 
 
 def _stacked(table: Table, outputs: Sequence[Reference]) -> Array:

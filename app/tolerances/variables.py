@@ -72,7 +72,7 @@ def faults(chosen: Sequence[TolerancedVariable], warnings: Sequence[Warning]) ->
     """Yield a fault if no value varies, or too many do."""
     if not chosen:
         others = "; ".join(f"{w.name}: {w.detail}" for w in warnings[:3])
-        detail = f"nothing that was asked for follows from a value with a tolerance{others and ': ' + others}"
+        detail = f"no requested output depends on a toleranced value{others and ': ' + others}"
         yield Fault("design", "no_tolerance", f"{detail}; write it like `55 ± 5 um`")
     if len(chosen) > MOST:
         yield Fault("design", "too_many", f"{len(chosen)} values vary; an analysis takes at most {MOST}")

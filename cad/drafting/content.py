@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import hypot
 
+from cad.drafting.cross_sections import cross_sections
 from cad.drafting.declaration import DrawingDeclaration
 from cad.drafting.definition import Definition
 from cad.drafting.measures import lengths, measures
@@ -17,8 +19,8 @@ from cad.drafting.supplement import Supplement
 from cad.drafting.views import View, is_assembly, views
 from cad.header import Header
 from cad.inspect import look_at
-from cad.step import Body
-from cad.surfaces import PartSurfaces, Surface
+from cad.step import Body, rigid
+from cad.surfaces import PartSurfaces, Surface, Z
 from cad.tolerances import toleranced_in
 
 
@@ -47,7 +49,8 @@ class Content:
     def plans(self) -> Iterator[Plan]:
         """Yield the sheets and scales in the order in which they are tried."""
         elsewhere = sum(len(one.dimensions) for one in self.removed)
-        return plans(self.section, self.end, self.dimensions, elsewhere)
+        below = any(one.stations for one in self.removed)
+        return plans(self.section, self.end, self.dimensions, elsewhere, below=below)
 
     def missing(self, without: Dimension | None = None) -> list[str]:
         """Return descriptions of everything that the dimensions leave undefined.
@@ -99,14 +102,21 @@ def contents(
     section, end = views(bodies, is_shaft=declared.is_shaft)
     parameters = declared.own(header.parameters if header else {})
     repeated = {name: spans_of(size, seen) for name, size in declared.sizes.items()}
+    seen = {body.name: _standing(seen[body.name], body) for body in bodies}
+    upright = [body for body in bodies if _is_upright(body)]
+    own = {body.name: seen[body.name] for body in upright}
     shown = [
-        *lengths(declared.sizes.values(), seen, section),
-        *measures(bodies, seen, section, end),
-        *standing([*seen.values()], section, end),
+        *lengths(declared.sizes.values(), own, section),
+        *measures(upright, own, section, end),
+        *standing([*own.values()], section, end),
     ]
-    features = None if is_assembly(bodies) else Features.of(_defined(declared, seen), end.frame)
-    removed = removed_sections(declared, parameters, bodies, seen, end)
+    removed = [
+        *removed_sections(declared, parameters, bodies, seen, end),
+        *cross_sections(declared, parameters, bodies, seen, end),
+    ]
     for some in ([removed] if removed else []) + [[]]:
+        cuts = [(one.height, one.leaning) for one in some]
+        features = None if is_assembly(bodies) else Features.of(_defined(declared, seen), end.frame, cuts)
         names = {name for one in some for name in one.names}
         rest = {name: text for name, text in parameters.items() if name not in names}
         dimensions, unseen = matched(rest, declared.sizes, shown, declared.limits)
@@ -117,6 +127,24 @@ def contents(
                 one.define(definition)
             dimensions = Supplement(definition, section, end, shown, repeated).complete(dimensions)
         yield Content(section, end, some, dimensions, unseen, features, repeated)
+
+
+def _is_upright(body: Body) -> bool:
+    """Return whether a part stands with its z axis along the shaft; bolts and dowels across it do not.
+
+    Those are dimensioned on their own sheets.
+    """
+    turn, _ = rigid(body.places[0])
+    return bool(turn[2, 2] > 1 - 1e-9)
+
+
+def _standing(seen: PartSurfaces, body: Body) -> PartSurfaces:
+    """Return the surfaces of a part, moved to its place if it is round about an axis away from the shaft."""
+    turn, shift = rigid(body.places[0])
+    rings = seen.about(Z)
+    if len(body.places) > 1 or not rings or hypot(*shift[:2]) < max(one.diameter for one in rings):
+        return seen
+    return seen.moved(turn, shift)
 
 
 def _in_table_alone(

@@ -1,38 +1,60 @@
 """Draw geometric tolerances, datums and surface textures at free places, with leaders to their faces.
 
 Frames follow ISO 1101 and surface textures ISO 21920-1. Datums follow ISO 5459; the symbol of a datum axis is
-in line with the dimension line of its feature.
+in line with the dimension line of its feature. A leader ends on an edge of its face, or on an extension line
+of that edge.
 """
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import product
 from math import cos, dist, pi, radians, sin
+
+import numpy as np
 
 from cad.drafting.curves import Point
 from cad.drafting.declaration import Control, DrawingDeclaration
-from cad.drafting.dimension_layout import TEXT, NoRoom, PlacedDimension
+from cad.drafting.dimension_layout import TEXT, DatumPlace, NoRoom, PlacedDimension
 from cad.drafting.formats import FORMATS
 from cad.drafting.frames import Frame
 from cad.drafting.letter_width import width_of
 from cad.drafting.page import Page
-from cad.drafting.room import Rectangle, Room, around
-from cad.drafting.symbols import Symbol, arrow, datum, texture
+from cad.drafting.room import Rectangle, Room
+from cad.drafting.symbols import Symbol, arrow, texture
+from cad.drafting.targets import targets
+from cad.drafting.views import View
 
-_HIGH = 2 * TEXT  # of a frame [mm on paper]
-_INTO = 3.0  # from the corner of a face to where a leader points [mm on paper]
-_ACROSS = 20.0  # a leader runs within a view, where another place is free [mm on paper]
 _ROUND = 4.0  # radius of a balloon [mm on paper]
+_DOT = 0.6  # radius of the dot at the end of a balloon's leader [mm on paper]
+_SHELF = 8.0  # length of the line on which the symbol of a texture stands [mm on paper]
 _STEMS = range(2, 90, 3)
+_FIRST, _RING, _BEYOND = 8, 4, 40
+"""Length of the shortest leader, step to the next, and how much longer one may be that crosses less."""
 
-BoxAt = Callable[[float, float], Rectangle]
+_SLANT = 0.4
+"""Of a leader's length: how far it leads away from the line of the edge on which it ends, at least."""
+
+_TURNS = np.radians(np.arange(0, 360, 10))
+_WAYS = np.stack([np.cos(_TURNS), np.sin(_TURNS)], axis=1)
+
+BoxesAt = Callable[[np.ndarray, np.ndarray], np.ndarray]
+"""The rectangles (n, 4) of something whose leader starts at points (n, 2), and leads to the left or not."""
 
 
 class Controls:
-    """Draws the tolerances, datums and surface textures that a model declares for dimensioned faces."""
+    """Draws the tolerances, datums and surface textures that a model declares for dimensioned faces.
 
-    def __init__(self, page: Page, room: Room, *, is_last: bool) -> None:
-        self.page, self.plan, self.room, self.is_last = page, page.plan, room, is_last
+    `faults` counts symbols without a free place.
+
+    `views` are the views of the sheet, each with the distance by which it is moved to the right.
+    """
+
+    def __init__(self, page: Page, room: Room, views: Sequence[tuple[View, float]], most: int) -> None:
+        self.most = most
+        self.page, self.plan, self.room, self.views = page, page.plan, room, views
+        self.faults = 0
 
     def draw(self, declared: DrawingDeclaration, placed: Sequence[PlacedDimension]) -> str:
         """Draw all symbols that belong to drawn dimensions; return the letter of the first datum.
@@ -40,102 +62,154 @@ class Controls:
         Raises
         ------
         NoRoom
-            If a symbol has no free place and this is not the last scale to be tried.
+            If as many symbols as on another sheet have no free place.
         """
         of: Mapping[str, PlacedDimension] = {one.dimension.name: one for one in placed if one.dimension.name}
         for name, letter in declared.datums.items():
             if name in of:
                 self._datum(of[name], letter)
         drawn = [letter for name, letter in declared.datums.items() if name in of]
+        stacks = defaultdict[str, list[Control]](list)
         for control in declared.controls:
-            if control.parameter in of:
-                self._frame(of[control.parameter], control)
+            stacks[control.parameter].append(control)
+        for name, stack in stacks.items():
+            if name in of:
+                self._frames(of[name], stack)
+                self._checked()
         for name, height in declared.textures.items():
             if name in of:
                 self._texture(of[name], f"Ra {height:g}")
+                self._checked()
         return drawn[0] if drawn else ""
 
-    def _datum(self, placed: PlacedDimension, letter: str) -> None:
-        tries = list(self._stems(placed))
-        chosen = next((one for one in tries if self.room.is_free(one[0])), None)
-        if chosen is None and not self.is_last:
+    def _checked(self) -> None:
+        if self.faults >= self.most:
             raise NoRoom
-        box, symbol = chosen or tries[0]
-        self.room.add(box)
-        corners = [(box[0], box[1]), (box[2], box[1]), (box[2], box[3]), (box[0], box[3]), (box[0], box[1])]
-        self.page.symbol(symbol.joined(Symbol(lines=[corners])))
-        middle = (box[0] + box[2]) / 2
-        self.page.write(letter, middle - width_of(letter, TEXT) / 2, box[1] + TEXT / 2, TEXT)
 
-    def _stems(self, placed: PlacedDimension) -> Iterator[tuple[Rectangle, Symbol]]:
-        """Yield possible positions of a datum symbol, in line with a dimension line if there is one."""
-        if placed.ends is None:
-            tip, turns = self._target(placed), [radians(turn) for turn in range(0, 360, 30)]
-            starts = [(tip, turn) for turn in turns]
-        else:
-            low, high = sorted(placed.ends)
-            turn = pi / 2 if low[0] == high[0] else 0.0
-            starts = [(high, turn), (low, turn + pi)]
-        for stem in _STEMS:
-            for tip, turn in starts:
-                symbol, end = datum(tip, turn, stem)
-                middle = end[0] + _HIGH / 2 * cos(turn), end[1] + _HIGH / 2 * sin(turn)
-                yield around(middle, _HIGH, _HIGH), symbol
+    def _datum(self, placed: PlacedDimension, letter: str) -> None:
+        if (one := placed.datum) is None:
+            one = self._datum_nearby(placed)
+            self.room.add(one.box)
+            self.room.add_line(one.stem, is_drawn=True)
+        left, low, right, high = one.box
+        corners = [(left, low), (right, low), (right, high), (left, high), (left, low)]
+        self.page.symbol(one.symbol.joined(Symbol(lines=[corners])))
+        middle = (left + right) / 2
+        self.page.write(letter, middle - width_of(letter, TEXT) / 2, low + TEXT / 2, TEXT)
 
-    def _frame(self, placed: PlacedDimension, control: Control) -> None:
-        """Draw a tolerance frame with its symbol, width and datum, and a leader to the face."""
-        frame = Frame(control.form, control.width, control.to, TEXT)
-        width, height = frame.width, frame.height
-        target = self._target(placed)
-        left, low = self._place(
-            target, lambda x, y: (x - 0.5, y - 0.5, x + width + 0.5, y + height + 0.5), width
-        )
-        start = (left if target[0] < left + width / 2 else left + width), low + height / 2
+    def _datum_nearby(self, placed: PlacedDimension) -> DatumPlace:
+        """Return the place of a datum whose dimension has no line with room for it."""
+        tip = self._targets(placed)[0]
+        turns = [radians(turn) for turn in range(0, 360, 30)]
+        tries = [DatumPlace.at(tip, turn, stem) for stem, turn in product(_STEMS, turns)]
+        free = (one for one in tries if self.room.is_free(one.box) and self.room.passes(one.stem))
+        chosen = next(free, None)
+        self.faults += chosen is None
+        return chosen or tries[0]
+
+    def _frames(self, placed: PlacedDimension, stack: Sequence[Control]) -> None:
+        """Draw the frames of one feature above each other, with one leader."""
+        frames = [Frame(one.form, one.width, one.to, TEXT) for one in stack]
+        width, height = max(frame.width for frame in frames), sum(frame.height for frame in frames)
+        boxes_at = _boxes(width, height, height - frames[0].height / 2)
+        target, start, is_left = self._beside(placed, boxes_at)
+        left = start[0] - width if is_left else start[0]
+        top = start[1] + frames[0].height / 2
+        for frame in frames:
+            top -= frame.height
+            frame.draw(self.page, left + width - frame.width if is_left else left, top)
         self.page.symbol(arrow(target, start))
-        frame.draw(self.page, left, low)
         self.room.add_leader([target, start])
 
     def balloon(self, number: str, target: Point) -> None:
         """Draw the number of a part in a circle, with a leader that ends in a dot on the part."""
-        x, y = self._place(target, lambda x, y: (x - _ROUND, y - _ROUND, x + _ROUND, y + _ROUND), 0.0)
+
+        def boxes(starts: np.ndarray, _is_left: np.ndarray) -> np.ndarray:
+            return np.concatenate([starts - _ROUND, starts + _ROUND], axis=1)
+
+        _, (x, y), _ = self._place([target], boxes, target)
         size = dist((x, y), target)
         foot = x + (target[0] - x) * _ROUND / size, y + (target[1] - y) * _ROUND / size
-        drawn = Symbol(lines=[[target, foot]], circles=[((x, y), _ROUND), (target, 0.5)])
-        self.page.symbol(drawn, "DIMENSIONS")
+        turns = [pi * step / 4 for step in range(8)]
+        dot = [(target[0] + _DOT * cos(turn), target[1] + _DOT * sin(turn)) for turn in turns]
+        halves = [
+            [dot[0], dot[1], dot[3], dot[2]],
+            [dot[4], dot[5], dot[7], dot[6]],
+            [dot[3], dot[4], dot[0], dot[7]],
+        ]
+        self.page.symbol(Symbol([[target, foot]], circles=[((x, y), _ROUND)], filled=halves), "DIMENSIONS")
         self.page.write(number, x - width_of(number, TEXT) / 2, y - TEXT / 2, TEXT)
         self.room.add_leader([target, foot])
 
     def _texture(self, placed: PlacedDimension, text: str) -> None:
+        """Draw the symbol of a texture on the last piece of its leader, which is level."""
         reach = width_of(text, 2.5)
-        target = self._target(placed)
-        x, y = self._place(target, lambda x, y: (x - 3.5, y - 0.5, x + 6.5 + reach, y + 10.5), reach)
-        self.page.symbol(texture(TEXT, reach).moved(x, y).joined(arrow(target, (x, y))))
+        boxes_at = _boxes(_SHELF + 4.0 + reach, 11.0, 0.5)
+        target, start, is_left = self._beside(placed, boxes_at)
+        left = start[0] - (_SHELF + 4.0 + reach if is_left else 0.0)
+        shelf = (start[0], start[1]), (left if is_left else left + _SHELF, start[1])
+        x, y = left + _SHELF / 2, start[1]
+        symbol = texture(TEXT, reach).moved(x, y).joined(arrow(target, start), Symbol(lines=[[*shelf]]))
+        self.page.symbol(symbol)
         self.page.write(text, x + 5.5, y + 6.0, 2.5)
-        self.room.add_leader([target, (x, y)])
+        self.room.add_leader([target, start])
 
-    def _target(self, placed: PlacedDimension) -> Point:
-        """Return the point on the paper to which a leader points; for a length, one away from the corner."""
-        measure = placed.dimension.measure
-        x, y = self.plan.paper(measure.points[1], placed.right)
-        return (x, y + _INTO) if measure.sort == "length" else (x, y)
+    def _targets(self, placed: PlacedDimension) -> list[Point]:
+        return targets(placed, self.views, self.plan)
 
-    def _place(self, target: Point, box_at: BoxAt, width: float) -> Point:
-        """Occupy the nearest free place near a target, and return it."""
-        tries = (
-            _beside(target, away, radians(turn), width)
-            for away in range(8, round(150 * self.plan.format.width / FORMATS[0].width), 4)
-            for turn in range(0, 360, 10)
+    def _beside(self, placed: PlacedDimension, boxes_at: BoxesAt) -> tuple[Point, Point, bool]:
+        """Return where a leader to the face of a dimension ends and starts, and whether it leads right."""
+        about = self.plan.paper(placed.dimension.measure.points[0], placed.right)
+        if placed.ends is None:
+            return self._place(self._targets(placed), boxes_at, about)
+        across = int(placed.dimension.measure.form == "up")  # its edges lie across what it measures
+        ways = _WAYS[np.abs(_WAYS[:, across]) > _SLANT]
+        return self._place(self._targets(placed), boxes_at, about, ways)
+
+    def _place(
+        self, ends: Sequence[Point], boxes_at: BoxesAt, about: Point, ways: np.ndarray = _WAYS
+    ) -> tuple[Point, Point, bool]:
+        """Return where a leader ends and starts, and whether it leads to the right; occupy its start.
+
+        Of the free places about an end, the nearest is taken whose leader crosses no outline, or fewest. It
+        crosses no view but that of the point `about`.
+        """
+        found: list[tuple[int, int, Point, Point, bool]] = []
+        farthest = round(150 * self.plan.format.width / FORMATS[0].width)
+        for away in range(_FIRST, farthest, _RING):
+            if found and (min(found)[0] == 0 or away > found[0][1] + _BEYOND):
+                break
+            for end in ends:
+                ring = self._ring(end, away * ways, boxes_at, about)
+                found += ((met, away, end, start, is_left) for met, start, is_left in ring)
+        self.faults += not found
+        _, _, end, start, is_left = (
+            min(found) if found else (0, 0, ends[0], (ends[0][0] + 8.0, ends[0][1]), False)
         )
-        free = [place for place in tries if self.room.is_free(box_at(*place))]
-        clear = [p for p in free if self.room.passes([target, p]) and self.room.is_apart([target, p])]
-        if not clear and not self.is_last:
-            raise NoRoom
-        short = (place for place in clear if self.room.length_in_views(target, place) <= _ACROSS)
-        place = next(short, (clear or free or [_beside(target, 8, 0.0, width)])[0])
-        self.room.add(box_at(*place))
-        return place
+        self.room.add(_box(boxes_at, start, is_left=is_left))
+        return end, start, is_left
+
+    def _ring(
+        self, end: Point, away: np.ndarray, boxes_at: BoxesAt, about: Point
+    ) -> Iterator[tuple[int, Point, bool]]:
+        """Yield the free starts of leaders about their end, with the number of outlines that they cross."""
+        starts, is_left = end + away, away[:, 0] < -1e-9
+        for place in np.flatnonzero(self.room.free(boxes_at(starts, is_left))):
+            start = float(starts[place, 0]), float(starts[place, 1])
+            if self.room.passes([end, start]) and self.room.is_apart([end, start], about):
+                yield self.room.outlines_met(end, start), start, bool(is_left[place])
 
 
-def _beside(target: Point, away: float, turn: float, width: float) -> Point:
-    u, v = cos(turn), sin(turn)
-    return target[0] + away * u - (width if u < 0 else 0.0), target[1] + away * v
+def _boxes(width: float, height: float, foot: float) -> BoxesAt:
+    """Return the rectangles of a thing beside the start of its leader, which is so far above its foot."""
+
+    def boxes(starts: np.ndarray, is_left: np.ndarray) -> np.ndarray:
+        left, low = starts[:, 0] - is_left * width, starts[:, 1] - foot
+        return np.stack([left - 0.5, low - 0.5, left + width + 0.5, low + height + 0.5], axis=1)
+
+    return boxes
+
+
+def _box(boxes_at: BoxesAt, start: Point, *, is_left: bool) -> Rectangle:
+    left, low, right, high = boxes_at(np.array([start]), np.array([is_left]))[0].tolist()
+    return left, low, right, high

@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from itertools import combinations
+from itertools import combinations, pairwise
 from math import atan2, degrees, dist, hypot
 from typing import Literal
 
@@ -105,6 +105,8 @@ class Definition:
         is_new = measure.sort not in ("diameter", "width") and self._adds_own(measure)
         if span[0][0] == "turn":
             self.turns[round(measure.value, 4)] = measure.count
+        if measure.sort == "pitch":
+            return self._add_pattern(span, measure)
         if self.is_symmetric(*span):
             self._symmetric.append(span)
             fresh = not (self.joined(span[0], AXIS) and self.joined(span[1], AXIS))
@@ -115,8 +117,23 @@ class Definition:
         self.settle()
         return is_new or fresh
 
+    def _add_pattern(self, span: tuple[Station, Station], measure: Measure) -> bool:
+        """Join the stations of holes at equal distances, which a pitch with a count describes."""
+        direction = next(one[0] for one in span if one != AXIS)
+        low = min(point[measure.form == "up"] for point in measure.points)
+        run = [station(direction, low + n * measure.value) for n in range(measure.count + 1)]
+        fresh = any(not self.joined(one, other) for one, other in pairwise(run))
+        for one, other in pairwise(run):
+            self.join(one, other)
+        if self.is_symmetric(run[0], run[-1]):
+            self._symmetric.append((run[0], run[-1]))
+        self.settle()
+        return fresh
+
     def _adds_own(self, measure: Measure) -> bool:
         sort = measure.sort
+        if sort == "gap":
+            return self._adds_wall(measure)
         if sort not in ("diameter", "radius", "angle", "chamfer", "width") or self.is_pitch_circle(measure):
             return False
         own: Own = (sort, round(measure.value, 4))
@@ -125,6 +142,25 @@ class Definition:
         self.sized |= faces
         self.given.add(own)
         return is_new
+
+    def _adds_wall(self, measure: Measure) -> bool:
+        """Return whether a wall about an axis beside the shaft gives one diameter from another."""
+        low, high = sorted(point[1] for point in measure.points)
+        holes = self.features.holes
+        inner, outer = (
+            {
+                (one.axis, round(one.diameter, 4))
+                for one in holes
+                if abs(one.axis[1] + one.diameter / 2 - at) < CLEAR
+            }
+            for at in (low, high)
+        )
+        for axis, diameter in inner:
+            both = {("diameter", diameter), *(("diameter", d) for other, d in outer if other == axis)}
+            if len(both) == 2 and len(new := both - self.given) == 1:
+                self.given |= new  # type: ignore[arg-type]
+                return True
+        return False
 
     def is_pitch_circle(self, measure: Measure) -> bool:
         """Return whether a diameter is that of a circle about the shaft through the axes of holes."""
@@ -138,7 +174,7 @@ class Definition:
             if measure.place != "end" or hypot(*points[0]) > CLEAR:
                 return None
             one, other = (degrees(atan2(y, x)) for x, y in points[1:])
-            return station("turn", one), station("turn", other)
+            return self._ray(one), self._ray(other)
         if measure.form in ("circle", "arc"):
             is_about = measure.place == "end" and hypot(*points[0]) < CLEAR
             radius = measure.value / (2 if measure.sort == "diameter" else 1)
@@ -152,6 +188,12 @@ class Definition:
         if measure.sort == "diameter":
             return self._ends("up", 0.0, high) if abs(low + high) < CLEAR else None
         return self._ends("up" if along else "across", low, high)
+
+    def _ray(self, turn: float) -> Station:
+        """Return the station of a direction, or the opposite one on its line if only that is needed."""
+        here, opposite = station("turn", turn), station("turn", turn + 180)
+        is_known = here in self.needed or here in self.optional
+        return opposite if opposite in self.needed and not is_known else here
 
     def _ends(self, direction: Direction, low: float, high: float) -> tuple[Station, Station] | None:
         one, other = self.known(direction, low), self.known(direction, high)
@@ -254,18 +296,26 @@ class Definition:
             return True
         return self.joined(across, AXIS) and self.joined(up, AXIS)
 
+    def is_even(self, hole: Hole) -> bool:
+        """Return whether a hole is one of at least three evenly round their circle."""
+        turns = self._turns(hole)
+        step = 360 / len(turns)
+        return len(turns) > 2 and all(abs(turn - turns[0] - n * step) < 1e-2 for n, turn in enumerate(turns))
+
+    def _turns(self, hole: Hole) -> list[float]:
+        """Return the directions of the holes that are like one, ascending [deg]."""
+        return sorted({round(one.turn, 3) % 360 for one in self.features.holes if one.is_like(hole)})
+
     def is_spaced(self, hole: Hole) -> bool:
         """Return whether a hole belongs to at least three that are evenly spaced on a circle.
 
         One of them, or the middle between two of them, must also lie on a located direction or a centre line.
         """
-        alike = [one for one in self.features.holes if one.is_like(hole)]
-        turns = sorted({round(one.turn % 360, 3) for one in alike})
-        step = 360 / len(turns)
-        even = all(abs(turn - turns[0] - n * step) < 1e-2 for n, turn in enumerate(turns))
+        if not self.is_even(hole):
+            return False
+        turns = self._turns(hole)
         known = any(self.joined(station("turn", turn), ("turn", 0.0)) for turn in turns)
-        mirrored = any(station("turn", turn + step / 2) == ("turn", 0.0) for turn in turns)
-        return len(turns) > 2 and even and (known or mirrored)
+        return known or station("turn", turns[0] + 180 / len(turns)) == ("turn", 0.0)
 
     def components(self, direction: Direction) -> list[list[Station]]:
         """Return the connected groups of stations of one direction, the located group first."""

@@ -6,10 +6,12 @@ oblique holes and angles stand at the nearest free place outside the views, with
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
-from math import atan2, cos, hypot, pi, radians, sin
+from itertools import islice, product
+from math import atan2, cos, dist, hypot, pi, radians, sin
+
+import numpy as np
 
 from cad.drafting.curves import Point
 from cad.drafting.formats import FORMATS
@@ -17,18 +19,39 @@ from cad.drafting.labels import Label, label_of
 from cad.drafting.lanes import Lane
 from cad.drafting.parameter_match import Dimension
 from cad.drafting.plan import LANE, Plan
-from cad.drafting.room import Rectangle, Room, around
+from cad.drafting.room import Rectangle, Room, around, overlap
+from cad.drafting.symbols import Symbol, datum
 
 TEXT = 3.5  # height of letters [mm on paper]
 GAP = 0.9  # between a dimension line and its words [mm on paper]
 EXTENSION = 1.5  # of an extension line beyond its dimension line [mm on paper]
 
 _ARROWS = 7.0  # shortest dimension line with its arrows within [mm on paper]
+_NARROW = radians(15)  # angle whose words stand beside it
 _TAIL = 6.5  # of a line with its arrows outside [mm on paper]
 _FIRST = 10.0  # from the view to its first dimension line [mm on paper]
 _MOST_LANES = 40
+_STEMS = range(2, 40, 3)  # lengths of a datum's stem that are tried [mm on paper]
 _MOST_ALIKE = 8  # other arcs that are tried
+_AT_ONCE = 120  # places whose room is looked up at once
 _NEAREST, _FARTHEST, _STEP = 5.0, 150.0, 3.0  # from what is measured to its words [mm on A3]
+
+
+@dataclass(frozen=True)
+class DatumPlace:
+    """A datum's triangle with its stem, and the square of its letter, on the paper."""
+
+    box: Rectangle
+    symbol: Symbol
+    stem: tuple[Point, Point]
+
+    @staticmethod
+    def at(tip: Point, turn: float, reach: float) -> DatumPlace:
+        """Return the datum whose triangle stands on a point, with a stem away at an angle [rad]."""
+        symbol, end = datum(tip, turn, reach)
+        middle = end[0] + TEXT * cos(turn), end[1] + TEXT * sin(turn)
+        foot = tip[0] + cos(turn), tip[1] + sin(turn)
+        return DatumPlace(around(middle, 2 * TEXT, 2 * TEXT), symbol, (foot, end))
 
 
 @dataclass(frozen=True)
@@ -45,6 +68,10 @@ class PlacedDimension:
         The distance by which its view is moved to the right.
     ends
         The ends of its dimension line on the paper [mm], if it stands in a lane.
+    datum
+        The place of its datum symbol, if its feature is a datum and it stands in a lane.
+    leader
+        The tip, the bend and the end of the leader of an arc or circle, on the paper [mm].
     """
 
     dimension: Dimension
@@ -53,6 +80,8 @@ class PlacedDimension:
     words: Point | None
     right: float
     ends: tuple[Point, Point] | None = None
+    leader: tuple[Point, Point, Point] | None = None
+    datum: DatumPlace | None = None
 
 
 Try = tuple[Rectangle, PlacedDimension, list[list[Point]]]
@@ -64,24 +93,25 @@ class NoRoom(Exception):
 
 
 class DimensionLayout:
-    """Finds a place for each dimension of a plan."""
+    """Finds a place for each dimension of a plan; `faults` counts those that have no free one.
 
-    def __init__(self, plan: Plan, room: Room, *, is_last: bool) -> None:
-        self.plan, self.room, self.is_last = plan, room, is_last
+    `datums` are the parameters whose features are datums: their dimension lines have room for the letter.
+    """
+
+    def __init__(self, plan: Plan, room: Room, datums: Collection[str]) -> None:
+        self.plan, self.room, self.datums, self.faults = plan, room, datums, 0
 
     def all(self) -> list[PlacedDimension]:
-        """Return every dimension with its place, those in lanes first.
-
-        Raises
-        ------
-        NoRoom
-            If a dimension has no free place and this is not the last scale to be tried.
-        """
+        """Return every dimension with its place, those in lanes first."""
         placed = [one for lane in self.plan.lanes.sides() for one in self._in_lanes(lane)]
         for one in placed:
             self._take_lines(one)
-        ordered = sorted(self.plan.lanes.local, key=lambda one: one.measure.form == "angle")
-        return placed + [self._local(one) for one in ordered]
+        return placed + self.local(self.plan.lanes.local)
+
+    def local(self, dimensions: Iterable[Dimension]) -> list[PlacedDimension]:
+        """Return dimensions of arcs, oblique holes and angles, which have no lanes; angles last."""
+        ordered = sorted(dimensions, key=lambda one: one.measure.form == "angle")
+        return [self._local(one) for one in ordered]
 
     def lane(self, lane: Lane) -> list[PlacedDimension]:
         """Return the dimensions on one side of a view with their places."""
@@ -123,12 +153,28 @@ class DimensionLayout:
                 away = lane.edge + lane.out * (_FIRST + LANE * number) / self.plan.scale
                 place = self.plan.paper((away, away), right)[1 - lane.along]
                 box = self._box_in_lane(label, lane.along, place, (low, high), middle)
-                if self.room.is_clear(box, 0.1):
+                stem = self._stem(lane.along, place, (low, high), box) if one.name in self.datums else None
+                if self.room.is_clear(box, 0.1) and (stem or one.name not in self.datums):
                     break
-                if not self.room.holds(box) and not self.is_last:
-                    raise NoRoom
+            else:
+                self.faults += 1
             self.room.add(box)
-            yield self._laned(one, label, lane.along, place, (low, high), middle, right)
+            laned = self._laned(one, label, lane.along, place, (low, high), middle, right)
+            yield self._with_datum(laned, stem) if stem else laned
+
+    def _stem(self, along: int, place: float, ends: tuple[float, float], own: Rectangle) -> DatumPlace | None:
+        """Return a free place for a datum in line with a dimension line."""
+        starts = (ends[1], pi / 2 * along), (ends[0], pi / 2 * along + pi)
+        for reach, (end, turn) in product(_STEMS, starts):
+            one = DatumPlace.at((place, end) if along else (end, place), turn, reach)
+            if not overlap(one.box, own) and self.room.is_free(one.box) and self.room.passes(one.stem):
+                return one
+        return None
+
+    def _with_datum(self, placed: PlacedDimension, datum: DatumPlace) -> PlacedDimension:
+        self.room.add(datum.box)
+        self.room.add_line(datum.stem, is_drawn=True)
+        return replace(placed, datum=datum)
 
     def _on_paper(self, one: Dimension, right: float) -> list[Point]:
         return [self.plan.paper(point, right) for point in one.measure.points]
@@ -184,54 +230,70 @@ class DimensionLayout:
                 tries = self._across_angle(one, label, right)
             case _:
                 tries = self._around(one, label, right)
-        about = self._on_paper(one, right)[0]
-        is_arc = one.measure.form == "angle"  # a dimension line, no leader: others may cross it
-        chosen, every = None, []
-        for each in tries:
-            every.append(each)
-            is_apart = self.room.is_at_home if is_arc else self.room.is_apart
-            if self._is_clear(each, is_arc=is_arc) and all(is_apart(line, about) for line in each[2]):
-                chosen = each
-                break
-        if chosen is None and not self.is_last:
-            raise NoRoom
-        box, placed, lines = chosen or next((each for each in every if self.room.is_free(each[0])), every[0])
+        is_within = one.measure.form == "angle"
+        about = self._on_paper(one, right)[-1] if is_within else None
+        chosen, first, every = None, None, iter(tries)
+        while chosen is None and (some := [*islice(every, _AT_ONCE)]):
+            first = first or some[0]
+            chosen = next(
+                (each for each in self._free(some, is_within=is_within) if self._is_clear(each, about)), None
+            )
+        self.faults += chosen is None
+        assert first is not None, "there are places on every sheet"
+        box, placed, lines = chosen or first
         self.room.add(box)
         for line in lines:
             self.room.add_line(line, is_drawn=True)
         return placed
 
-    def _is_clear(self, each: Try, *, is_arc: bool) -> bool:
-        """Return whether the text has room and no line crosses another text.
+    def _free(self, some: Sequence[Try], *, is_within: bool) -> Iterator[Try]:
+        """Yield the places whose words have room, perhaps also within a view."""
+        free = self.room.free(np.array([box for box, _, _ in some]))
+        return (
+            each
+            for each, is_free in zip(some, free, strict=True)
+            if is_free or (is_within and self.room.is_free_within(each[0]))
+        )
 
-        The text of an angle may stand within its view.
-        """
-        box, _, lines = each
-        has_room = self.room.is_free(box) or (is_arc and self.room.is_free_within(box))
-        return has_room and all(self.room.passes(piece) for piece in pairwise(lines[0]))
+    def _is_clear(self, each: Try, about: Point | None) -> bool:
+        """Return whether the first line crosses neither words nor dimensions, and none a foreign view."""
+        _, _, (first, *others) = each
+        if not self.room.passes(first) or not self.room.is_apart(first, about):
+            return False
+        return all(self.room.is_at_home(line, about or first[0]) for line in others)
 
     def _beyond_arc(self, one: Dimension, label: Label, right: float) -> Iterator[Try]:
-        """Yield places for the text at the end of a radial leader, for every arc that shows the parameter."""
+        """Yield the words at the end of a leader along a radius, of any arc that shows the parameter.
+
+        The leader comes from outside or, of an arc that is not a whole circle, across its centre.
+        """
         whole = one.measure.form == "circle"
         turns = sorted(range(-180, 180, 15), key=abs) if whole else (0, 10, -10, 20, -20)
-        width, height = label.width(TEXT), label.height(TEXT)
+        width, height = label.width(TEXT) + 1.0, label.height(TEXT)
         arcs = [replace(one, measure=measure) for measure in (one.measure, *one.alike[:_MOST_ALIKE])]
         for away in self._distances():
             for arc in arcs:
                 centre, on = self._on_paper(arc, right)
                 radius = hypot(on[0] - centre[0], on[1] - centre[1])
                 angle = atan2(on[1] - centre[1], on[0] - centre[0])
-                for turn in turns:
+                for turn, side in product(turns, (1,) if whole else (1, -1)):
                     u, v = cos(angle + radians(turn)), sin(angle + radians(turn))
-                    x, y = centre[0] + (radius + away) * u, centre[1] + (radius + away) * v
-                    left = x - width if u <= 0 else x
+                    reach = radius + away if side > 0 else -away
+                    x, y = centre[0] + reach * u, centre[1] + reach * v
+                    tip = centre[0] + radius * u, centre[1] + radius * v
+                    left = x - width if x < tip[0] else x
                     low = y + GAP + TEXT / 2 - height / 2
                     box = left - 0.5, min(low, y + 0.2), left + width + 0.5, low + height
-                    lines = [[centre, (x, y)], [(left, y), (left + width, y)]]
-                    yield box, PlacedDimension(arc, label, self.plan.at(x, y), None, right), lines
+                    end = left if x < tip[0] else left + width, y
+                    words = self.plan.at(left + width / 2, y + GAP + TEXT / 2)
+                    placed = PlacedDimension(
+                        arc, label, self.plan.at(x, y), words, right, None, (tip, (x, y), end)
+                    )
+                    yield box, placed, [[tip, (x, y)], [(x, y), end]]
 
     def _across_angle(self, one: Dimension, label: Label, right: float) -> Iterator[Try]:
         """Yield places for the text outside a dimension arc between two legs or their extensions."""
+        yield from self._beside_angle(one, label, right)
         corner, *legs = self._on_paper(one, right)
         turns = [atan2(y - corner[1], x - corner[0]) for x, y in legs]
         opening = (turns[1] - turns[0]) % (2 * pi)
@@ -254,6 +316,25 @@ class DimensionLayout:
             placed = PlacedDimension(one, label, self.plan.at(*base), None, right)
             yield around(words, width, height), placed, lines[:1] + _nearest(lines[1:])
 
+    def _beside_angle(self, one: Dimension, label: Label, right: float) -> Iterator[Try]:
+        """Yield the words beside a narrow angle, at one end of an arc that runs across both legs."""
+        corner, *legs = self._on_paper(one, right)
+        low, high = sorted(atan2(y - corner[1], x - corner[0]) for x, y in legs)
+        middle = dist(corner, legs[0])
+        if high - low > _NARROW:
+            return
+        width, height = label.width(TEXT), label.height(TEXT)
+        for away in self._distances():
+            for radius in (middle + away - _NEAREST, middle - away):
+                tail, beyond = _TAIL / radius, (_TAIL + GAP + width / 2) / radius
+                steps = [low - tail + (high - low + 2 * tail) * i / 24 for i in range(25)]
+                arc = [_polar(corner, radius, turn) for turn in steps]
+                base = self.plan.at(*_polar(corner, radius, (low + high) / 2))
+                for turn in (high + beyond, low - beyond):
+                    words = _polar(corner, radius, turn)
+                    placed = PlacedDimension(one, label, base, self.plan.at(*words), right)
+                    yield around(words, width + 2 * GAP, height + 2 * GAP), placed, [arc]
+
     def _distances(self) -> Iterator[float]:
         """Yield distances from a feature to its text [mm on paper], more of them on a larger sheet."""
         away, farthest = _NEAREST, _FARTHEST * self.plan.format.width / FORMATS[0].width
@@ -272,6 +353,10 @@ class DimensionLayout:
                 y = middle[1] + (away + height / 2) * sin(radians(turn))
                 placed = PlacedDimension(one, label, self.plan.at(*middle), self.plan.at(x, y), right)
                 yield around((x, y), width + 1.0, height + 1.0), placed, [[middle, (x, y)]]
+
+
+def _polar(corner: Point, radius: float, turn: float) -> Point:
+    return corner[0] + radius * cos(turn), corner[1] + radius * sin(turn)
 
 
 def _middle(low: float, high: float, width: float, others: list[float]) -> float:

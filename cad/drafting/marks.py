@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from math import hypot
+from math import atan2, degrees, hypot
 
-from cad.drafting.curves import Point
+from cad.drafting.curves import Curve, Point, joined
 from cad.drafting.dimension_layout import PlacedDimension
 from cad.drafting.letter_width import width_of
 from cad.drafting.page import Page
@@ -53,8 +53,15 @@ def centre_lines(section: View, end: View, bodies: Sequence[Body], plan: Plan) -
     own = [*shaft[1:], *_distinct(of_end)]
     across = _distinct(_longer(axis, over) for axis in end.axes)
     own += [axis for axis in across if not any(_on_one_line(axis, other) for other in own)]
-    moved = [(_right(a, plan.beside), _right(b, plan.beside)) for a, b in own]
-    return Centres([shaft[0], *axes, *crosses, *moved], [((plan.beside, 0.0), radius) for radius in pitch])
+    moved = [(_right(a, plan.beside), _right(b, plan.beside)) for a, b in _beside(own, end)]
+    lines = [*_beside([shaft[0], *axes, *crosses], section), *moved]
+    return Centres(lines, [((plan.beside, 0.0), radius) for radius in pitch])
+
+
+def _beside(lines: Sequence[Segment], view: View) -> list[Segment]:
+    """Return centre lines, each drawn once, where no outline covers them (ISO 128-2)."""
+    curves = joined([Curve([*line]) for line in lines], view.visible)
+    return [(one.points[0], one.points[-1]) for one in curves if one.arc is None and len(one.points) == 2]
 
 
 def pitch_circles(placed: Sequence[PlacedDimension]) -> list[tuple[Point, float]]:
@@ -105,8 +112,10 @@ def _crosses(view: View, plan: Plan, over: float) -> Iterator[Segment]:
 def _pitched(view: View, plan: Plan, over: float) -> tuple[list[float], Iterator[Segment]]:
     """Return the radii of pitch circles about the shaft, and the centre lines of all holes."""
     middles = _middles(view, plan)
-    away = Counter(round(hypot(*middle), 3) for middle in middles)
-    pitch = [size for size, count in away.items() if count > 2 and size > 0]
+    turns = defaultdict[float, list[float]](list)
+    for x, y in middles:
+        turns[round(hypot(x, y), 3)].append(round(degrees(atan2(y, x)), 3) % 360)
+    pitch = [size for size, some in turns.items() if size > 0 and _are_even(sorted(some))]
 
     def lines() -> Iterator[Segment]:
         for (x, y), radius in middles.items():
@@ -117,6 +126,12 @@ def _pitched(view: View, plan: Plan, over: float) -> tuple[list[float], Iterator
                 yield (x - reach, y), (x + reach, y)
 
     return pitch, lines()
+
+
+def _are_even(turns: Sequence[float]) -> bool:
+    """Return whether at least three directions [deg] are evenly spaced round a circle."""
+    step = 360 / max(len(turns), 1)
+    return len(turns) > 2 and all(abs(turn - turns[0] - n * step) < 1e-2 for n, turn in enumerate(turns))
 
 
 def _longer(segment: Segment, over: float) -> Segment:

@@ -17,12 +17,13 @@ from cad.drafting.views import View
 from cad.step import Body, rigid
 from cad.surfaces import Face, PartSurfaces, Size, Surface, X, Y, Z
 
-Sort = Literal["diameter", "radius", "length", "width", "gap", "offset", "angle", "chamfer", "edge"]
+Sort = Literal["diameter", "radius", "length", "width", "gap", "offset", "angle", "chamfer", "edge", "pitch"]
 Form = Literal["across", "up", "aligned", "circle", "arc", "angle"]
 Place = Literal["section", "end"]
 
 _CLEAR = 1e-6  # [mm], and as the sine of an angle
 _ARC = 1e-5  # [mm]: how near to its surface an edge of the section lies
+_ECCENTRIC = 0.05  # between axes that enclose a wall, as a share of the inner diameter
 _MOST_LEVELS = 14  # planes across one axis; drawings of more would not be read
 
 
@@ -61,7 +62,7 @@ def measures(
     for one in seen.values():
         results += _of_cylinders(one, section, end)
         results += _of_planes(one, section, end, most)
-        results += _of_flanks(one, end)
+        results += flank_angles(one, end)
     results += _of_axes([c for one in seen.values() for c in one.cylinders if c.along(Z)], section)
     standing = list(_standing(bodies, seen))
     results += _of_arcs(section, standing, {name: one.count for name, one in seen.items()})
@@ -88,21 +89,33 @@ def _standing(bodies: Sequence[Body], seen: Mapping[str, PartSurfaces]) -> Itera
 
 
 def _of_cylinders(seen: PartSurfaces, section: View, end: View) -> Iterator[Measure]:
-    about = []
+    about, counts = [], _counts(seen)
     for cylinder in seen.cylinders:
         if cylinder.along(Z):
             turned = cylinder.turned(Z)
-            yield from _lengthwise(turned, section, end, seen.count * alike(turned, seen))
-            about += [turned] if cylinder.about(Z) else []
+            yield from _lengthwise(turned, section, end, seen.count * counts[turned.face])
+            about += [turned] if _within(cylinder, section.frame.towards) else []
         elif _within(cylinder, section.frame.towards):
             yield _drilled(cylinder, section, seen.count)
     for one, other in combinations(about, 2):
         inner, outer = sorted((one, other), key=lambda cylinder: cylinder.diameter)
-        low, high = inner.diameter / 2, outer.diameter / 2
-        ends = [_edge_at(section, c.diameter / 2, c.reach) for c in (inner, outer)]
+        if one.point.cross(Z).sub(other.point.cross(Z)).Length > _ECCENTRIC * inner.diameter:
+            continue
+        low, high = (section.frame.flat(c.point)[1] + c.diameter / 2 for c in (inner, outer))
+        ends = [_edge_at(section, radius, c.reach) for radius, c in ((low, inner), (high, outer))]
         if high - low > _CLEAR and ends[0] is not None and ends[1] is not None:
             points = ((ends[0], low), (ends[1], high))
             yield Measure("gap", high - low, "section", "up", points, 1, on(inner), on(outer))
+
+
+def _counts(seen: PartSurfaces) -> dict[Face, int]:
+    """Return how many cylinders along the shaft are equal and begin and end together, by their faces."""
+    groups = defaultdict[tuple[float, ...], dict[Face, tuple[float, float]]](dict)
+    for one in (c.turned(Z) for c in seen.cylinders if c.along(Z)):
+        low, high = one.reach
+        foot = round(one.point.x, 4) + 0.0, round(one.point.y, 4) + 0.0
+        groups[round(one.diameter, 5), round(low, 5), round(high, 5)][one.face] = foot
+    return {face: len({*feet.values()}) for feet in groups.values() for face in feet}
 
 
 def alike(cylinder: Surface, seen: PartSurfaces) -> int:
@@ -197,6 +210,11 @@ def _of_planes(seen: PartSurfaces, section: View, end: View, most: int) -> Itera
     levels = seen.levels(Z)
     for low, high in _spans(levels if len(levels) <= most else [*levels[: most - 1], levels[-1]]):
         yield length_between(seen, low, high, section)
+    yield from plane_widths(seen, end)
+
+
+def plane_widths(seen: PartSurfaces, end: View) -> Iterator[Measure]:
+    """Yield the distances between planes along the shaft, level or upright in the end view."""
     for axis in (X, Y):
         right, up = end.frame.flat(axis)
         sign = right + up  # one of them is 0
@@ -295,8 +313,9 @@ def _holds(plane: Surface, point: Point, frame: Frame) -> bool:
     return abs((at - plane.point).dot(plane.direction)) < _ARC
 
 
-def _of_flanks(seen: PartSurfaces, end: View) -> Iterator[Measure]:
+def flank_angles(seen: PartSurfaces, end: View) -> Iterator[Measure]:
     """Yield the angles between planes through the shaft's axis, measured on the side of the material."""
+    yield from _of_tapers(seen, end)
     flanks = [plane for plane in seen.planes if plane.holds(Z)]
     legs = [(leg, plane) for plane in flanks if (leg := _leg(plane, end))]
     for (one, plane), (other, second) in combinations(legs, 2):
@@ -305,6 +324,31 @@ def _of_flanks(seen: PartSurfaces, end: View) -> Iterator[Measure]:
             legs_of = (one, other) if turn > 0 else (other, one)
             points = ((0.0, 0.0), *legs_of)
             yield Measure("angle", abs(turn), "end", "angle", points, 1, on(plane), on(second))
+
+
+def _of_tapers(seen: PartSurfaces, end: View) -> Iterator[Measure]:
+    """Yield the angles between planes along the shaft that are mirrored in the upright centre line."""
+    askew = [p for p in seen.planes if abs(p.direction.dot(Z)) < _CLEAR and not p.holds(Z)]
+    lines = [(p, *end.frame.flat(p.direction), p.point.dot(p.direction)) for p in askew]
+    right = [one for one in lines if one[1] * one[3] > 0 and min(abs(one[1]), abs(one[2])) > _CLEAR]
+    for plane, across, up, away in right:
+        lean, at = up / across, away / across  # x = at - lean y
+        for other, u, v, d in lines:
+            if abs(u) > _CLEAR and abs(d / u + at) < _ARC and abs(v / u + lean) < _CLEAR:
+                x, y = _middle(end, at, lean)
+                points = (0.0, at / lean), (x, y), (-x, y)
+                angle = 2 * degrees(atan2(abs(lean), 1.0))
+                yield Measure("angle", angle, "end", "angle", points, 1, on(plane), on(other))
+
+
+def _middle(end: View, at: float, lean: float) -> Point:
+    """Return the middle of the longest visible line x = at - lean y."""
+    runs = [
+        [y for x, y in curve.points if abs(x + lean * y - at) < 1e-4 and x * at > 0] for curve in end.visible
+    ]
+    run = max(runs, key=lambda ys: max(ys) - min(ys) if ys else 0.0, default=[])
+    y = (min(run) + max(run)) / 2 if run else 0.0
+    return at - lean * y, y
 
 
 def _leg(plane: Surface, end: View) -> Point | None:

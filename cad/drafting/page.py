@@ -15,7 +15,7 @@ from cad.drafting.breaks import zigzag
 from cad.drafting.curves import Curve, Point
 from cad.drafting.dimension_layout import EXTENSION, GAP, TEXT, PlacedDimension
 from cad.drafting.plan import Plan
-from cad.drafting.symbols import Symbol
+from cad.drafting.symbols import Symbol, arrow
 from cad.drafting.views import View
 
 APP = "CRANKWRIGHT"
@@ -123,6 +123,8 @@ class Page:
         override = self._drawn(placed)
         override.dimension.dxf.layer = "DIMENSIONS"
         override.render()
+        if placed.leader:
+            self._led(override.dimension, placed)
         if placed.dimension.name:
             override.dimension.set_xdata(APP, [(1000, placed.dimension.name)])
 
@@ -152,7 +154,31 @@ class Page:
                 )
             case "arc":
                 return self.space.add_radius_dim(points[0], radius=measure.value, location=base, **level)
-        return self.space.add_angular_dim_3p(base, *_counter_clockwise(points), **style)
+        drawn = self.space.add_angular_dim_3p(base, *_counter_clockwise(points), **style)
+        if placed.words is not None:
+            drawn.set_location(placed.words)
+        return drawn
+
+    def _led(self, dimension: Any, placed: PlacedDimension) -> None:
+        """Draw an arc's or circle's dimension as a leader with its words, in place of what ezdxf draws.
+
+        Ezdxf lets a leader neither come across the centre of an arc, nor end with the words above it.
+        """
+        assert placed.leader
+        assert placed.words
+        _, bend, end = (self.plan.at(*point) for point in placed.leader)
+        block = dimension.get_geometry_block()
+        block.delete_all_entities()
+        drawn = arrow(placed.leader[0], placed.leader[1])
+        for line in drawn.lines:
+            block.add_line(*(self.plan.at(*point) for point in line))
+        for corners in drawn.filled:
+            block.add_solid([self.plan.at(*point) for point in corners])
+        block.add_line(bend, end)
+        text = placed.label.text.replace("<>", placed.label.number)
+        style = {"style": STYLE, "char_height": TEXT / self.plan.scale, "attachment_point": 5, "color": 7}
+        block.add_mtext(text, dxfattribs={**style, "insert": placed.words})
+        dimension.dxf.text_midpoint = placed.words
 
     def _line_under(self, placed: PlacedDimension, along: int) -> None:
         """Extend a dimension line below a text that stands beyond its end."""

@@ -11,12 +11,15 @@ from cadquery import Vector
 
 from cad.drafting.curves import Point
 from cad.drafting.section import Frame
-from cad.surfaces import Surface, Z
+from cad.surfaces import Face, Surface, Z
 
 _CLEAR = 1e-4  # [mm]
 _FLAT = 1e-6  # as the sine of an angle
 
 Words = dict[float, str]
+BarCut = tuple[float, frozenset[Face]]
+"""The height of a section across a bar, and the planes that it cuts where the bar tapers."""
+
 Sort = Literal["diameter", "radius", "chamfer", "angle", "width"]
 """Sizes that a feature has of itself: a hole its diameter, a fillet its radius, a slope its angle, a slot
 and a bar with round ends their width."""
@@ -53,6 +56,8 @@ class Features:
         Positions along the shaft at which radii occur that belong to no cylinder.
     centres
         Positions along the shaft at which the section has a centre line.
+    bars
+        By the height of a section across a tapered bar, how far the bar reaches to the right there.
     """
 
     along: Words = field(default_factory=dict)
@@ -64,24 +69,26 @@ class Features:
     holes: list[Hole] = field(default_factory=list)
     centres: list[float] = field(default_factory=list)
     round_at: dict[float, float] = field(default_factory=dict)
+    bars: dict[float, float] = field(default_factory=dict)
 
     @staticmethod
-    def of(surfaces: Sequence[Surface], frame: Frame) -> Features:
+    def of(surfaces: Sequence[Surface], frame: Frame, cuts: Sequence[BarCut] = ()) -> Features:
         """Return the features of placed surfaces; `frame` is that of the end view."""
-        return _Reader(surfaces, frame).read()
+        return _Reader(surfaces, frame, cuts).read()
 
 
 class _Reader:
     """Reads features from surfaces."""
 
-    def __init__(self, surfaces: Sequence[Surface], frame: Frame) -> None:
-        self.frame, self.found = frame, Features()
+    def __init__(self, surfaces: Sequence[Surface], frame: Frame, cuts: Sequence[BarCut]) -> None:
+        self.frame, self.found, self.cuts = frame, Features(), cuts
         self.planes = [s for s in surfaces if s.form == "plane"]
         self.cylinders = [s.turned(Z) for s in surfaces if s.form == "cylinder"]
         self.cones = [s.turned(Z) for s in surfaces if s.form == "cone"]
         self.tori = [s for s in surfaces if s.form == "torus"]
         self.spheres = [s for s in surfaces if s.form == "sphere"]
         self.levels = sorted({round(p.point.z, 6) for p in self.planes if p.along(Z)})
+        self.fillets = [c for c in self.cylinders if self._is_fillet(c)]
 
     def read(self) -> Features:
         for plane in self.planes:
@@ -117,9 +124,12 @@ class _Reader:
 
     def _askew(self, plane: Surface, words: str) -> None:
         """Record a plane parallel to the shaft that is oblique to both centre lines."""
-        if self._is_tangent(plane):
+        if self._is_tangent(plane) or self._tapers(plane, words):
             return
         away = plane.point.dot(plane.direction)
+        if self._is_of_hexagon(plane):
+            self.found.own["width", 2 * abs(away)] = f"width across flats of {_name(plane)}"
+            return
         x, y = self.frame.flat(plane.middle) if plane.middle is not None else (0.0, 0.0)
         u, v = self.frame.flat(plane.direction)
         foot = x - away * u, y - away * v  # on the line through the shaft beside which the plane runs
@@ -128,13 +138,34 @@ class _Reader:
         if abs(away) > _CLEAR:
             self.found.own["width", 2 * abs(away)] = f"width between planes of {_name(plane)}"
 
+    def _is_of_hexagon(self, plane: Surface) -> bool:
+        """Return whether a plane is a flat of a regular hexagon about the axis, which its width defines."""
+        away = plane.point.dot(plane.direction)
+        flats = [p for p in self.planes if p.face[0] == plane.face[0] and abs(p.direction.dot(Z)) < _FLAT]
+        alike = (p for p in flats if abs(abs(p.point.dot(p.direction)) - abs(away)) < _CLEAR)
+        turns = {round(degrees(atan2(p.direction.y, p.direction.x)) % 60, 3) % 60 for p in alike}
+        return len(flats) == 6 and len(turns) == 1
+
+    def _tapers(self, plane: Surface, words: str) -> bool:
+        """Return whether sections across a bar cut a plane; record taper and place in each section."""
+        across, up = self.frame.flat(plane.direction)
+        heights = [height for height, faces in self.cuts if plane.face in faces]
+        for height in heights:
+            at = (plane.point.dot(plane.direction) - up * height) / across
+            self.found.across[at] = f"{words} at {at:.6g} mm, {height:.6g} mm high"
+            self.found.bars[height] = max(at, self.found.bars.get(height, at))
+            self.found.up[height] = f"the section of {_name(plane)} at {height:.6g} mm"
+            taper = 2 * degrees(atan2(abs(up), abs(across)))
+            self.found.own["angle", taper] = f"taper of {_name(plane)}"
+        return bool(heights)
+
     def _is_tangent(self, plane: Surface) -> bool:
         """Return whether a plane is located by round ends that it touches.
 
         It touches two round ends of a bar, or one end along a radius from the shaft.
         """
         touched: list[Vector] = []
-        for end in (c for c in self.cylinders if c.along(Z) and not c.about(Z)):
+        for end in (c for c in self.cylinders if c.along(Z) and not c.about(Z) and c not in self.fillets):
             away = (end.point - plane.point).dot(plane.direction)
             if abs(abs(away) - end.diameter / 2) < _CLEAR:
                 foot = end.point - Z * end.point.z
@@ -173,6 +204,9 @@ class _Reader:
             return
         if self._is_relief(cylinder):
             return
+        if cylinder in self.fillets:
+            self.found.own["radius", radius] = f"R{radius:.6g} of {name}"
+            return
         sort: Sort = "width" if self._is_round_end(cylinder) else "diameter"
         self.found.own[sort, cylinder.diameter] = f"Ø{cylinder.diameter:.6g} of {name}"
         if cylinder.along(Z):
@@ -183,9 +217,22 @@ class _Reader:
         elif abs(cylinder.direction.dot(Z)) < _FLAT:
             self._cross_hole(cylinder, name)
 
+    def _is_fillet(self, cylinder: Surface) -> bool:
+        """Return whether a cylinder along the shaft touches two faces, as a rounded edge does."""
+        if not cylinder.along(Z) or cylinder.about(Z):
+            return False
+        coaxial = (c for c in self.cylinders if _are_in_line(c, cylinder))
+        if any(abs(c.diameter - cylinder.diameter) > _CLEAR for c in coaxial):
+            return False
+        planes = [p for p in self.planes if abs(p.direction.dot(Z)) < _FLAT and _touches(cylinder, p)]
+        rounds = [c for c in self.cylinders if c.along(Z) and _touches_round(cylinder, c)]
+        are_parallel = not rounds and all(p.along(planes[0].direction) for p in planes)
+        return len(planes) + len(rounds) > 1 and not are_parallel
+
     def _is_round_end(self, cylinder: Surface) -> bool:
         """Return whether planes touch a cylinder on two sides and no larger cylinder is coaxial."""
-        if any(_are_in_line(c, cylinder) and c.diameter > cylinder.diameter + _CLEAR for c in self.cylinders):
+        larger = (c for c in self.cylinders if c.diameter > cylinder.diameter + _CLEAR)
+        if any(_are_in_line(c, cylinder) for c in larger):
             return False
         beside = [p for p in self.planes if cylinder.along(Z) and abs(p.direction.dot(Z)) < _FLAT]
         away = [(cylinder.point - p.point).dot(p.direction) for p in beside if p.face[0] == cylinder.face[0]]
@@ -210,7 +257,7 @@ class _Reader:
         bore = min(bores, key=lambda c: c.diameter)
         deep = hypot(x, y) + cylinder.diameter / 2 - bore.diameter / 2
         is_wide = hypot(x, y) < cylinder.diameter / 2 < bore.diameter / 2 + _CLEAR
-        if not is_wide:
+        if not is_wide or deep < _CLEAR:
             return False
         edge = relief_height(hypot(x, y), cylinder.diameter / 2, bore.diameter / 2)
         along, at = (self.found.up, edge) if abs(x) > abs(y) else (self.found.across, edge)
@@ -288,6 +335,20 @@ class _Reader:
 def _are_in_line(one: Surface, other: Surface) -> bool:
     """Return whether two cylinders are coaxial."""
     return one.along(other.direction) and (one.point - other.point).cross(other.direction).Length < _CLEAR
+
+
+def _touches(cylinder: Surface, plane: Surface) -> bool:
+    """Return whether a plane of the same part touches a cylinder along it."""
+    away = abs((cylinder.point - plane.point).dot(plane.direction))
+    return plane.face[0] == cylinder.face[0] and abs(away - cylinder.diameter / 2) < _CLEAR
+
+
+def _touches_round(one: Surface, other: Surface) -> bool:
+    """Return whether a parallel cylinder of the same part touches another from outside or inside."""
+    apart = (one.point - other.point).cross(one.direction).Length
+    radii = one.diameter / 2, other.diameter / 2
+    is_near = abs(apart - sum(radii)) < _CLEAR or abs(apart - abs(radii[0] - radii[1])) < _CLEAR < apart
+    return one.face[0] == other.face[0] and is_near
 
 
 def _touch(cone: Surface, plane: Surface) -> bool:

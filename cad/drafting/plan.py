@@ -12,10 +12,17 @@ from cad.drafting.parameter_match import Dimension
 from cad.drafting.views import View
 
 LANE = 9.0  # from one dimension line to the next
-FILLED, MORE = 0.35, 0.005
+FILLED, MORE = 0.4, 0.005
 """Least share of the area's width or height that views without their dimensions take, if a sheet has it; and
 by how much it grows with each dimension."""
 
+_LEAST = 0.4  # of that share: views that take less are tried only if no others have room
+_COST = {"A3": 0.0, "A2": 1.0, "A1": 2.0, "A0": 4.0}
+"""Of a sheet: the smallest that does is taken, and A0, which no desk holds, only if nothing else does."""
+_EMPTY, _REDUCED = 5.0, 0.5
+"""Cost of a sheet without views, in sheets; smaller views leave it emptier. Cost of a reduced scale."""
+
+_BELOW = 1.8  # of the room above views that have others below them, from below to the middle
 _ROOM = 24.0  # around and between views, beside the dimensions
 SCALES = [f * 10.0**n for n in range(3, -5, -1) for f in (5, 2, 1)]
 """The scales of ISO 5455, the largest first."""
@@ -46,11 +53,12 @@ class Plan:
         return f"{self.scale:g}:1" if self.scale >= 1 else f"1:{1 / self.scale:g}"
 
 
-def plans(section: View, end: View, wanted: Sequence[Dimension], elsewhere: int = 0) -> Iterator[Plan]:
+def plans(
+    section: View, end: View, wanted: Sequence[Dimension], elsewhere: int = 0, *, below: bool = False
+) -> Iterator[Plan]:
     """Yield the plans in the order of preference.
 
-    Sheets and scales whose views fill the sheet come first, beginning with the smallest sheet and its largest
-    scale. All others with enough room follow, the fullest first.
+    A smaller sheet comes before a larger one, unless its scale leaves it emptier than the larger one.
 
     Parameters
     ----------
@@ -60,6 +68,8 @@ def plans(section: View, end: View, wanted: Sequence[Dimension], elsewhere: int 
         The dimensions of the two views.
     elsewhere
         The number of dimensions in removed sections.
+    below
+        Whether removed sections stand in rows below the views.
     """
     lanes = Lanes.sorted(wanted, section, end)
     (left, low), (right, high) = section.box
@@ -77,13 +87,18 @@ def plans(section: View, end: View, wanted: Sequence[Dimension], elsewhere: int 
         for s in SCALES
         if s * across + taken[0] <= format.room[0] and s * (top - bottom) + taken[1] <= format.room[1]
     ]
-    wanted_share = min(FILLED + MORE * (len(wanted) + elsewhere), 0.55)
-    full = [one for one in fitting if share(*one) >= wanted_share]
-    others = sorted((one for one in fitting if one not in full), key=lambda one: -share(*one))
-    for format, scale in [*full, *others] or [(FORMATS[-1], SCALES[-1])]:
+    wanted_share = min(FILLED + MORE * (len(wanted) + elsewhere), 0.5)
+
+    def cost(format: Format, scale: float) -> float:
+        emptiness = max(wanted_share - share(format, scale), 0.0) / wanted_share
+        return _COST[format.name] + _EMPTY * emptiness + _REDUCED * (scale < 1)
+
+    readable = [one for one in fitting if share(*one) >= _LEAST * wanted_share]
+    ordered = sorted(readable or fitting, key=lambda one: (cost(*one), -one[1]))
+    for format, scale in ordered or [(FORMATS[-1], SCALES[-1])]:
         area, room = format.area, format.room
         gap = (_ROOM + sides[1]) / scale
         spare = (room[0] - scale * across - taken[0]) / 2, (room[1] - scale * (top - bottom) - taken[1]) / 2
         x = left - (area[0] + _ROOM + sides[0] + spare[0]) / scale
-        y = bottom - (area[1] + _ROOM + sides[3] + spare[1]) / scale
+        y = bottom - (area[1] + _ROOM + sides[3] + spare[1] * (_BELOW if below else 1.0)) / scale
         yield Plan(scale, right + gap - end_left, (x, y), lanes, format)

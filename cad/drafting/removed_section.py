@@ -10,10 +10,11 @@ parameters that are dimensioned there instead of in the other views.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
+import numpy as np
 from cadquery import Location, Vector
 
 from cad.drafting.curves import Point
@@ -32,22 +33,28 @@ from cad.drafting.section import CLEAR, Cut, Frame, curve_of, cut_of, faces_acro
 from cad.drafting.symbols import arrow
 from cad.drafting.views import View
 from cad.step import Body
-from cad.surfaces import PartSurfaces, Y, Z
+from cad.surfaces import Face, PartSurfaces, Surface, Y, Z
 
 LETTERS = 5.0  # height of the letters that name a section [mm on paper]
 _MARGIN = 12.0  # about a section, beside its lanes [mm on paper]
+_AT_ONCE = 200  # places whose room is looked up at once
 _STEP = 4.0  # between places that are tried [mm on paper]
 _LABEL = 14.0  # of a section's label above it [mm on paper]
 
 
 @dataclass(frozen=True)
 class RemovedSection:
-    """A removed section: its view about its own origin, its height in the end view, and its dimensions."""
+    """A removed section: its view about its own origin, its dimensions, and its height in the end view.
+
+    A section across the shaft has the places along the shaft at which it is cut, instead of a height.
+    """
 
     letter: str
     view: View
     height: float
     dimensions: tuple[Dimension, ...]
+    stations: tuple[float, ...] = ()
+    leaning: frozenset[Face] = frozenset()  # planes that it cuts, of a bar that tapers
 
     @property
     def names(self) -> set[str | None]:
@@ -57,9 +64,9 @@ class RemovedSection:
     def define(self, definition: Definition) -> None:
         """Add the dimensions of the section: horizontal ones are across the shaft, vertical ones along it."""
         sign = self.view.frame.up.dot(Z)
-        for measure in (one.measure for one in self.dimensions):
+        for measure in (one.measure for one in self.dimensions if not one.is_reference):
             points = measure.points
-            if measure.form == "up":
+            if measure.form == "up" and not self.stations:
                 points = tuple((y * sign, 0.0) for _, y in points)
                 definition.add(replace(measure, form="across", points=points))
             else:
@@ -106,12 +113,24 @@ def _removed(
         return None
     view = View(frame, curves, [], [], [cut_of(part, face, frame) for face in faces], [], straight)
     wanted = {name: parameters[name] for name in shows if name in parameters}
-    shown = [*_measures(view, seen[body.name])]
+    leaning = [*_leaning(view, seen[body.name], height)]
+    shown = [*_measures(view, seen[body.name], leaning)]
     dimensions, _ = matched(wanted, declared.sizes, shown, declared.limits)
-    return RemovedSection(letter, view, height, tuple(dimensions)) if dimensions else None
+    planes = on(*(plane for _, plane in leaning))
+    return RemovedSection(letter, view, height, tuple(dimensions), leaning=planes) if dimensions else None
 
 
-def _measures(view: View, seen: PartSurfaces) -> Iterator[Measure]:
+def _leaning(view: View, seen: PartSurfaces, height: float) -> Iterator[tuple[float, Surface]]:
+    """Yield planes along the shaft that are askew, with their places on edges of the section."""
+    places = {one[0] for one, other in view.edges if abs(one[0] - other[0]) < CLEAR}
+    for plane in seen.planes:
+        right, up = view.frame.right.dot(plane.direction), plane.direction.y
+        if abs(plane.direction.dot(Z)) < CLEAR < min(abs(right), abs(up)):
+            at = (plane.point.dot(plane.direction) - up * height) / right
+            yield from ((place, plane) for place in places if abs(place - at) < CLEAR)
+
+
+def _measures(view: View, seen: PartSurfaces, leaning: Sequence[tuple[float, Surface]]) -> Iterator[Measure]:
     """Yield the distances between parallel straight edges, measured at their lowest or leftmost ends."""
     forms: tuple[tuple[int, Form], ...] = ((0, "across"), (1, "up"))
     for along, form in forms:
@@ -122,15 +141,29 @@ def _measures(view: View, seen: PartSurfaces) -> Iterator[Measure]:
                 feet[place] = min(feet.get(place, foot), foot)
         axis = view.frame.up if along else view.frame.right
         for low, high in combinations(sorted(feet), 2):
-            sides = (on(*seen.planes_at(axis, level)) for level in (low, high))
+            sides = (_faces_at(axis, level, seen, () if along else leaning) for level in (low, high))
             ends = ((low, feet[low]), (high, feet[high]))
             points = ends if along == 0 else tuple((foot, place) for place, foot in ends)
             yield Measure("width", high - low, "section", form, points, 1, *sides)
 
 
-def mark(page: Page, room: Room, removed: RemovedSection) -> None:
-    """Draw the cutting line of a removed section in the end view; its arrows point down."""
+def _faces_at(
+    axis: Vector, level: float, seen: PartSurfaces, leaning: Iterable[tuple[float, Surface]]
+) -> frozenset[Face]:
+    """Return the faces at a level of a section: planes across the axis, and those that are askew."""
+    return on(*seen.planes_at(axis, level), *(plane for at, plane in leaning if abs(at - level) < CLEAR))
+
+
+def mark(page: Page, room: Room, removed: RemovedSection, section: View) -> None:
+    """Draw the line along which a section is cut, in the end view; the arrows point down.
+
+    The lines of a section across the shaft are in the section along it; their arrows point to the right.
+    """
     plan = page.plan
+    for station in removed.stations:
+        _mark_across(page, room, removed.letter, station, section)
+    if removed.stations:
+        return
     (left, _), (right, _) = removed.view.box
     width = width_of(removed.letter, LETTERS)
     for side, out in ((left, -1), (right, 1)):
@@ -143,8 +176,33 @@ def mark(page: Page, room: Room, removed: RemovedSection) -> None:
         room.add((min(at, start, stop) - 0.5, y - 9.5, max(at + width, start, stop) + 0.5, y + 1.0))
 
 
-def place(page: Page, room: Room, removed: RemovedSection, placing: DimensionLayout) -> list[PlacedDimension]:
-    """Draw a section at a free place of the sheet; return its dimensions with their places.
+def _mark_across(page: Page, room: Room, letter: str, station: float, section: View) -> None:
+    """Draw the ends of a line across the shaft, beyond the shaft there, with arrows and letters.
+
+    Raises
+    ------
+    NoRoom
+        If it is too near to another one.
+    """
+    (_, low), (_, high) = section.box
+    width = width_of(letter, TEXT)
+    for edge, out in ((high, 1), (low, -1)):
+        x, y = page.plan.paper((station, edge))
+        start, stop = y + 1.5 * out, y + 6.5 * out
+        page.line([(x, start), (x, stop)], "CUTTING")
+        page.symbol(arrow((x + 6.0, stop), (x, stop)))
+        page.write(letter, x - width - 1.0, stop - TEXT / 2, TEXT)
+        ends = sorted((start, stop - TEXT / 2, stop + TEXT / 2))
+        box = x - width - 1.5, ends[0], x + 6.5, ends[-1]
+        if not room.is_clear(box, 0.0):
+            raise NoRoom
+        room.add(box)
+
+
+def place(
+    page: Page, room: Room, removed: RemovedSection, placing: DimensionLayout
+) -> tuple[list[PlacedDimension], View]:
+    """Draw a section at a free place of the sheet; return its dimensions, and its view there.
 
     Raises
     ------
@@ -153,25 +211,32 @@ def place(page: Page, room: Room, removed: RemovedSection, placing: DimensionLay
     """
     plan = page.plan
     lanes = {form: [d for d in removed.dimensions if d.measure.form == form] for form in ("across", "up")}
-    inner = [one for one in lanes["up"] if _is_within(one, removed.view)]
+    is_across = bool(removed.stations)
+    inner = [one for one in lanes["up"] if not is_across and _is_within(one, removed.view)]
     beside = [one for one in lanes["up"] if one not in inner]
-    sides = LANE * len(beside) + _MARGIN, LANE * len(lanes["across"]) + _MARGIN
+    local = [one for one in removed.dimensions if one.measure.form not in lanes]
+    margin = _MARGIN * 1.5 if local else _MARGIN
+    sides = LANE * len(beside) + margin, LANE * len(lanes["across"]) + margin
     above = _LABEL + max((label_of(one).width(TEXT) for one in inner), default=0.0)
-    left, low = _found(plan, room, removed, (*sides, above))
+    left, low = _found(plan, room, removed, (*sides, above, margin))
     (x, y), _ = removed.view.box
     corner = plan.at(left + sides[0], low + sides[1])
     shift = corner[0] - x, corner[1] - y
     view = _shifted(removed.view, shift)
     (x, y), (right, high) = view.box
-    room.add((*plan.paper((x, y)), *plan.paper((right, high))), is_view=True)
+    room.add_view(
+        (*plan.paper((x, y)), *plan.paper((right, high))),
+        [[plan.paper(point) for point in one.points] for one in view.visible],
+    )
     _label(page, room, view, removed.letter, above)
     page.view(view, 0.0)
     over = 3.0 / plan.scale
     middle = (x + right) / 2, (y + high) / 2
+    cross = shift if is_across else middle
     page.centres(
         [
-            ((x - over, middle[1]), (right + over, middle[1])),
-            ((middle[0], y - over), (middle[0], high + over)),
+            ((min(x, cross[0]) - over, cross[1]), (max(right, cross[0]) + over, cross[1])),
+            ((cross[0], min(y, cross[1]) - over), (cross[0], max(high, cross[1]) + over)),
         ],
         [],
     )
@@ -183,7 +248,8 @@ def place(page: Page, room: Room, removed: RemovedSection, placing: DimensionLay
     for one in (_moved(one, shift) for one in inner):
         along = (one.measure.points[0][0] + middle[0]) / 2  # beside the centre line
         placed.append(placing.within(one, along, high))
-    return placed
+    placed += placing.local(_moved(one, shift) for one in local)
+    return placed, view
 
 
 def _by_size(dimensions: Sequence[Dimension]) -> list[Dimension]:
@@ -195,21 +261,27 @@ def _is_within(one: Dimension, view: View) -> bool:
     return min(x for x, _ in one.measure.points) > view.box[0][0] + CLEAR
 
 
-def _found(plan: Plan, room: Room, removed: RemovedSection, sides: tuple[float, float, float]) -> Point:
-    """Return the lower left corner of the nearest free place for a section [mm on paper]."""
+def _found(
+    plan: Plan, room: Room, removed: RemovedSection, sides: tuple[float, float, float, float]
+) -> Point:
+    """Lower left corner of the nearest free place for a section with its dimensions [mm on paper]."""
     (x, y), (right, high) = removed.view.box
-    width = sides[0] + (right - x) * plan.scale + _MARGIN
+    width = sides[0] + (right - x) * plan.scale + sides[3]
     height = sides[1] + (high - y) * plan.scale + sides[2]
     near = plan.paper((right, removed.height), plan.beside)
+    if removed.stations:
+        near = plan.paper((removed.stations[0], 0.0))[0] - width / 2, room.area[1]
 
     def away(corner: Point) -> float:
         return abs(corner[0] - near[0]) + abs(corner[1] + height / 2 - near[1])
 
     corners = sorted(_corners(room.area, width, height), key=away)
-    for corner in corners:
-        box: Rectangle = (*corner, corner[0] + width, corner[1] + height)
-        if room.is_free(box):
-            return corner
+    places = np.array(corners).reshape(-1, 2)
+    boxes = np.concatenate([places, places + np.array([width, height])], axis=1)
+    for start in range(0, len(corners), _AT_ONCE):
+        free = np.flatnonzero(room.free(boxes[start : start + _AT_ONCE]))
+        if len(free):
+            return corners[start + int(free[0])]
     raise NoRoom
 
 

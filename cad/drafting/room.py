@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
-from math import hypot
 
 import numpy as np
 
@@ -13,7 +12,27 @@ from cad.drafting.curves import Point
 Rectangle = tuple[float, float, float, float]
 """Left, low, right, high [mm on paper]."""
 
+_STRIPS = 40  # of a view, in which words keep off its lines
 _APART = 0.8  # between two texts, and between a text and a line [mm on paper]
+
+
+class _Rows:
+    """Rows of four numbers that grow, as an array."""
+
+    def __init__(self) -> None:
+        self.rows: list[tuple[float, float, float, float]] = []
+        self._array = np.zeros((0, 4))
+
+    def add_line(self, points: Sequence[Point]) -> None:
+        """Add the pieces of a line through points."""
+        self.rows += [(*a, *b) for a, b in pairwise(points)]
+
+    @property
+    def array(self) -> np.ndarray:
+        """Return all rows (n, 4)."""
+        if len(self._array) != len(self.rows):
+            self._array = np.array(self.rows)
+        return self._array
 
 
 class Room:
@@ -21,27 +40,49 @@ class Room:
 
     def __init__(self, area: Rectangle) -> None:
         self.area = area
-        self.boxes: list[Rectangle] = []
-        self.words: list[Rectangle] = []
         self.views: list[Rectangle] = []
         self.leaders: list[list[Point]] = []
-        self._lines: list[tuple[float, float, float, float]] = []
-        self._array = np.zeros((0, 4))
-        self._drawn: list[tuple[float, float, float, float]] = []  # of dimensions, leaders and frames
-        self._meeting = np.zeros((0, 4))
-        self._outlines: list[tuple[float, float, float, float]] = []
-        self._edges = np.zeros((0, 4))
+        self._boxes, self._words, self._lines = _Rows(), _Rows(), _Rows()
+        self._drawn = _Rows()  # lines of dimensions, leaders and frames
+        self._outlines = _Rows()  # of views
+
+    @property
+    def words(self) -> list[Rectangle]:
+        """Return the rectangles of texts and symbols."""
+        return self._words.rows
 
     def add(self, box: Rectangle, *, is_view: bool = False) -> None:
-        """Occupy a rectangle; a leader may cross it only if it is a view."""
-        self.boxes.append(box)
+        """Occupy a rectangle; lines to a part's faces cross only that of a view."""
+        self._boxes.rows.append(box)
         (self.views if is_view else self.words).append(box)
 
+    def add_view(self, box: Rectangle, lines: Iterable[Sequence[Point]]) -> None:
+        """Occupy what a view covers: in strips across it, from its lowest to its highest line."""
+        self.views.append(box)
+        left, step = box[0], max((box[2] - box[0]) / _STRIPS, 1e-9)
+        reach = [[np.inf, -np.inf] for _ in range(_STRIPS)]
+        for line in lines:
+            self.add_outline(line)
+            for one, other in pairwise(line):
+                (x, y), (u, v) = sorted((one, other))
+                first, last = (min(max(int((at - left) / step), 0), _STRIPS - 1) for at in (x, u))
+                for number in range(first, last + 1):
+                    ends = (min(max(left + (number + n) * step, x), u) for n in (0, 1))
+                    at = [y + (v - y) * (end - x) / (u - x) if u > x else y for end in ends]
+                    low, high = reach[number]
+                    reach[number] = [
+                        min(low, *at, *([v] if u == x else [])),
+                        max(high, *at, *([v] if u == x else [])),
+                    ]
+        for number, (low, high) in enumerate(reach):
+            if low <= high:
+                self._boxes.rows.append((left + number * step, low, left + (number + 1) * step, high))
+
     def add_line(self, points: Sequence[Point], *, is_drawn: bool = False) -> None:
-        """Occupy a polyline; no leader crosses one that is drawn for a dimension."""
-        self._lines += [(*a, *b) for a, b in pairwise(points)]
+        """Occupy a line through points; one that is drawn for a dimension is crossed by no leader."""
+        self._lines.add_line(points)
         if is_drawn:
-            self._drawn += [(*a, *b) for a, b in pairwise(points)]
+            self._drawn.add_line(points)
 
     def add_leader(self, points: Sequence[Point]) -> None:
         """Occupy a leader, from its target to its text or frame."""
@@ -49,17 +90,15 @@ class Room:
         self.add_line(points, is_drawn=True)
 
     def add_outline(self, points: Sequence[Point]) -> None:
-        """Record a line of a view, which texts within that view avoid."""
-        self._outlines += [(*a, *b) for a, b in pairwise(points)]
+        """Keep a line of a view, which words within that view avoid."""
+        self._outlines.add_line(points)
 
     def is_free_within(self, box: Rectangle) -> bool:
-        """Return whether a rectangle within a view is clear of its lines, of texts and of other lines."""
-        if not self.holds(box) or any(overlap(box, other, _APART) for other in self.words):
+        """Return whether a rectangle within a view is clear of its lines, of words and of other lines."""
+        one = np.array([box])
+        if not self.holds(box) or _overlaps(one, self._words.array, _APART).any():
             return False
-        if len(self._edges) != len(self._outlines):
-            self._edges = np.array(self._outlines)
-        is_blank = not len(self._edges) or not crossed(self._edges, box, _APART).any()
-        return is_blank and not self._is_crossed(box)
+        return not (crossed(self._outlines.array, box, _APART).any() or self._is_crossed(one).any())
 
     def holds(self, box: Rectangle) -> bool:
         """Return whether a rectangle is within the area of the sheet."""
@@ -67,39 +106,42 @@ class Room:
         return box[0] >= left and box[1] >= low and box[2] <= right and box[3] <= high
 
     def is_clear(self, box: Rectangle, apart: float = _APART) -> bool:
-        """Return whether a rectangle is within the area and clear of all occupied ones."""
-        return self.holds(box) and not any(overlap(box, other, apart) for other in self.boxes)
+        """Return whether a rectangle is on the area and clear of all others."""
+        return self.holds(box) and not _overlaps(np.array([box]), self._boxes.array, apart).any()
 
     def is_free(self, box: Rectangle) -> bool:
-        """Return whether a rectangle is within the area and clear of all occupied rectangles and lines."""
-        return self.is_clear(box) and not self._is_crossed(box)
+        """Return whether a rectangle is on the area and clear of all others and of all lines."""
+        return bool(self.free(np.array([box]))[0])
+
+    def free(self, boxes: np.ndarray) -> np.ndarray:
+        """Return which rectangles (n, 4) are on the area and clear of all others and of all lines."""
+        left, low, right, high = self.area
+        within = (boxes[:, :2] >= (left, low)).all(axis=1) & (boxes[:, 2:] <= (right, high)).all(axis=1)
+        free = np.zeros(len(boxes), dtype=bool)
+        places = np.flatnonzero(within)
+        places = places[~_overlaps(boxes[places], self._boxes.array, _APART).any(axis=1)]
+        free[places[~self._is_crossed(boxes[places])]] = True
+        return free
 
     def passes(self, line: Sequence[Point]) -> bool:
-        """Return whether a straight line crosses no text."""
-        piece = np.array([[*line[0], *line[-1]]])
-        return not any(crossed(piece, box).any() for box in self.words)
+        """Return whether a line through points crosses no words."""
+        words = self._words.array
+        return not any(crossed(piece, words).any() for piece in _pieces(line))
 
     def is_apart(self, line: Sequence[Point], about: Point | None = None) -> bool:
-        """Return whether a line crosses no drawn dimension, and no view other than that of its target.
-
-        The target is the start of the line unless it is given.
-        """
-        pieces = np.array([(*a, *b) for a, b in pairwise(line)])
-        if len(self._drawn) != len(self._meeting):
-            self._meeting = np.array(self._drawn)
-        if len(self._meeting) and any(_meet(piece, self._meeting).any() for piece in pieces):
+        """Return whether a line meets no dimension, and no view but that of what it is about, its start."""
+        if any(_meet(piece, self._drawn.array).any() for piece in _pieces(line)):
             return False
         return self.is_at_home(line, about or line[0])
 
     def is_at_home(self, line: Sequence[Point], about: Point) -> bool:
-        """Return whether a line crosses no view other than that of its target."""
-        pieces = np.array([(*a, *b) for a, b in pairwise(line)])
+        """Return whether a line crosses no view but that of the point that it is about."""
         foreign = [box for box in self.views if not _is_in(about, box)]
-        return not any(crossed(pieces, box).any() for box in foreign)
+        return not any(crossed(_pieces(line), box).any() for box in foreign)
 
-    def length_in_views(self, one: Point, other: Point) -> float:
-        """Return the length of a straight line within the bounding boxes of views [mm on paper]."""
-        return sum(_length_within(one, other, box) for box in self.views)
+    def outlines_met(self, one: Point, other: Point) -> int:
+        """Return how many pieces of outlines a straight line crosses."""
+        return int(_meet(np.array([*one, *other]), self._outlines.array).sum())
 
     def first(self, boxes: Iterable[tuple[Rectangle, Point]]) -> Point | None:
         """Occupy the first free rectangle, and return its point."""
@@ -109,10 +151,16 @@ class Room:
                 return point
         return None
 
-    def _is_crossed(self, box: Rectangle) -> bool:
-        if len(self._array) != len(self._lines):
-            self._array = np.array(self._lines)
-        return bool(len(self._array) and crossed(self._array, box, _APART).any())
+    def _is_crossed(self, boxes: np.ndarray) -> np.ndarray:
+        """Return which rectangles a line crosses."""
+        lines = self._lines.array[:, np.newaxis, :]
+        result: np.ndarray = np.asarray(crossed(lines, boxes, _APART).any(axis=0))
+        return result
+
+
+def _pieces(line: Sequence[Point]) -> np.ndarray:
+    """Return the straight pieces of a line (n, 4)."""
+    return np.array([(*a, *b) for a, b in pairwise(line)])
 
 
 def _is_in(point: Point, box: Rectangle) -> bool:
@@ -132,34 +180,26 @@ def _meet(piece: np.ndarray, lines: np.ndarray) -> np.ndarray:
     return result
 
 
-def _length_within(one: Point, other: Point, box: Rectangle) -> float:
-    """Return the length of a segment within a rectangle (Liang and Barsky)."""
-    enter, leave = 0.0, 1.0
-    for axis in (0, 1):
-        away = other[axis] - one[axis]
-        if abs(away) < 1e-12:
-            if not box[axis] <= one[axis] <= box[axis + 2]:
-                return 0.0
-            continue
-        low, high = sorted(((box[axis] - one[axis]) / away, (box[axis + 2] - one[axis]) / away))
-        enter, leave = max(enter, low), min(leave, high)
-    return max(leave - enter, 0.0) * hypot(other[0] - one[0], other[1] - one[1])
-
-
 def overlap(one: Rectangle, other: Rectangle, apart: float = 0.0) -> bool:
-    """Return whether two rectangles overlap, or are closer than a given distance."""
-    is_beside = one[0] >= other[2] + apart or other[0] >= one[2] + apart
-    return not (is_beside or one[1] >= other[3] + apart or other[1] >= one[3] + apart)
+    """Return whether two rectangles overlap, or are closer than this distance."""
+    return bool(_overlaps(np.array([one]), np.array([other]), apart)[0, 0])
 
 
-def crossed(lines: np.ndarray, box: Rectangle, apart: float = 0.0) -> np.ndarray:
-    """Return which segments (n, 4) are closer to a rectangle than a given distance (Liang and Barsky)."""
-    start, away = lines[:, :2], lines[:, 2:] - lines[:, :2]
+def _overlaps(some: np.ndarray, others: np.ndarray, apart: float) -> np.ndarray:
+    """Return which rectangles (n, 4) overlap which others (m, 4), or are closer to them than this."""
+    one, other = some[:, np.newaxis, :], others[np.newaxis, :, :]
+    is_beside = (one[..., :2] >= other[..., 2:] + apart) | (other[..., :2] >= one[..., 2:] + apart)
+    result: np.ndarray = np.asarray(~is_beside.any(axis=2))
+    return result
+
+
+def crossed(lines: np.ndarray, boxes: Rectangle | np.ndarray, apart: float = 0.0) -> np.ndarray:
+    """Return which straight pieces (…, 4) are closer to rectangles (…, 4) than this (Liang and Barsky)."""
+    boxes = np.asarray(boxes)
+    start, away = lines[..., :2], lines[..., 2:] - lines[..., :2]
     away = np.where(np.abs(away) < 1e-12, 1e-12, away)
-    low = (np.array([box[0] - apart, box[1] - apart]) - start) / away
-    high = (np.array([box[2] + apart, box[3] + apart]) - start) / away
-    enter = np.minimum(low, high).max(axis=1)
-    leave = np.maximum(low, high).min(axis=1)
+    low, high = (boxes[..., :2] - apart - start) / away, (boxes[..., 2:] + apart - start) / away
+    enter, leave = np.minimum(low, high).max(axis=-1), np.maximum(low, high).min(axis=-1)
     meets: np.ndarray = np.maximum(enter, 0.0) <= np.minimum(leave, 1.0)
     return meets
 

@@ -35,6 +35,8 @@ from cad.step import Body
 from cad.surfaces import PartSurfaces
 
 _MOST_PLANS = 8  # sheets and scales that are tried
+_MOST_FAULTS = 1000
+_FEW_FAULTS = 4  # of a sheet with removed sections, rather than one without them
 
 
 def write_dxf(bodies: Sequence[Body], header: Header | None, whole: Sequence[Body] = ()) -> bytes:
@@ -69,13 +71,14 @@ def _no_times() -> Iterator[None]:
 
 @dataclass(frozen=True)
 class Laid:
-    """A sheet on which everything has a place."""
+    """A sheet on which everything has a place; `faults` counts places that are not free."""
 
     page: Page
     room: Room
     centres: Centres
     placed: Sequence[PlacedDimension]
     datum: str
+    faults: int
 
 
 def draw(bodies: Sequence[Body], header: Header | None, whole: Sequence[Body] = ()) -> tuple[Drawing, Format]:
@@ -107,43 +110,55 @@ def laid_out(
     header: Header | None,
     declared: DrawingDeclaration,
 ) -> tuple[Content, Laid]:
-    """Return the first sheet on which everything has room, with removed sections if possible."""
+    """Return the first sheet on which everything has a free place, else that with the fewest faults.
+
+    Sheets without removed sections come last, unless those with them have many faults.
+    """
+    every: list[tuple[Content, Laid]] = []
     for content in contents(bodies, seen, header, declared):
-        tried = [*islice(content.plans(), _MOST_PLANS)]
-        for plan in tried:
-            is_last = plan is tried[-1] and not content.removed
+        if any(laid.faults <= _FEW_FAULTS for _, laid in every):
+            break
+        for plan in islice(content.plans(), _MOST_PLANS):
+            most = min((laid.faults for _, laid in every), default=_MOST_FAULTS)
             try:
-                return content, _laid(content, bodies, declared, plan, is_last=is_last)
+                every.append((content, _laid(content, bodies, declared, plan, most)))
             except NoRoom:
                 continue
-    raise AssertionError("the largest sheet has room for every drawing")
+            if every[-1][1].faults == 0:
+                return every[-1]
+    return min(every, key=lambda one: one[1].faults)
 
 
 def _laid(
-    content: Content, bodies: Sequence[Body], declared: DrawingDeclaration, plan: Plan, *, is_last: bool
+    content: Content, bodies: Sequence[Body], declared: DrawingDeclaration, plan: Plan, most: int
 ) -> Laid:
     """Return the dimensions, removed sections and symbols on one sheet.
 
     Raises
     ------
     NoRoom
-        If something has no free place and this is not the last sheet to be tried.
+        If a removed section has no place, or there are as many faults as `most`.
     """
     page = Page(document_of(plan), plan)
     centres = centre_lines(content.section, content.end, bodies, plan)
     room = _room(content.section, content.end, centres, plan)
     cutting_line(page, content.section, content.end, room)
     for one in content.removed:
-        mark(page, room, one)
-    placing = DimensionLayout(plan, room, is_last=is_last)
+        mark(page, room, one, content.section)
+    placing = DimensionLayout(plan, room, declared.datums)
     placed = placing.all()
+    views = [(content.section, 0.0), (content.end, plan.beside)]
     for one in content.removed:
-        placed += place(page, room, one, placing)
-    controls = Controls(page, room, is_last=is_last)
+        dimensions, view = place(page, room, one, placing)
+        placed += dimensions
+        views.append((view, 0.0))
+    if placing.faults >= most:
+        raise NoRoom
+    controls = Controls(page, room, views, most - placing.faults)
     datum = controls.draw(declared, placed)
     for number, target in balloons(content.section, bodies):
         controls.balloon(str(number), plan.paper(target))
-    return Laid(page, room, centres, placed, datum)
+    return Laid(page, room, centres, placed, datum, placing.faults + controls.faults)
 
 
 def _fill(
@@ -165,9 +180,10 @@ def _room(section: View, end: View, centres: Centres, plan: Plan) -> Room:
     left, low, right, high = plan.format.area
     room = Room((left + 1, low + 1, right - 1, high - 1))
     for view, away in ((section, 0.0), (end, plan.beside)):
-        room.add(_on_paper(view, plan, away), is_view=True)
-        for curve in (*view.visible, *view.hidden, *view.smooth):
-            room.add_outline([plan.paper(point, away) for point in curve.points])
+        lines = (*view.visible, *view.hidden, *view.smooth)
+        room.add_view(
+            _on_paper(view, plan, away), [[plan.paper(p, away) for p in one.points] for one in lines]
+        )
     for line in centres.lines:
         room.add_line([plan.paper(point) for point in line])
     return room

@@ -16,22 +16,24 @@ from cad.drafting.title import (
     FIELDS,
     GENERAL,
     HEIGHT,
+    ROUNDED,
     SIZES,
+    STAMPED_OF_PART,
     SURFACES,
     TEXTURE,
     WIDTH,
+    Field,
 )
 from cad.header import Header
 from cad.stamp import MARK
 from cad.step import Body
 from cad.tolerances import Limits, TableTolerance, angle_tolerance, deviations, limits_of, number_of
-from templates.core.units.tolerance import IN_TABLE, is_toleranced
+from templates.core.units.tolerance import IN_TABLE
 
 _ROW = 6.0  # from one row of the table to the next, if they have room [mm on paper]
 _LETTERS = 3.0
 _NAMES = 58.0  # width of the names in the table [mm on paper]
-_OF_THE_WHOLE = ("mass", "material", "part")
-"""Fields that a stamp fills in with what is true of all parts together."""
+_LARGE, _DM3 = 1e5, 1e6  # [mm³]
 _MOST_LINES = 3  # of one value in the table
 
 
@@ -85,13 +87,22 @@ class General:
 class SheetNumber:
     """The number of a sheet: the first sheet shows all parts, each further sheet one part.
 
-    On the first of several sheets, `names` holds the names of all parts and how often they occur.
+    On the first of several sheets, `names` holds the names of all parts and how often they occur. `volume` is
+    that of the part [mm³], from which a stamp computes its mass.
     """
 
     number: int = 1
     count: int = 1
     part: str = ""
     names: tuple[tuple[str, int], ...] = ()
+    volume: float = 0.0
+
+    @property
+    def volume_text(self) -> str:
+        """Return the volume of a part, with a unit that makes it short enough for its field."""
+        if not self.part:
+            return ""
+        return f"{self.volume:.5g} mm³" if self.volume < _LARGE else f"{self.volume / _DM3:.5g} dm³"
 
     @staticmethod
     def of(bodies: Sequence[Body], whole: Sequence[Body]) -> SheetNumber:
@@ -100,7 +111,9 @@ class SheetNumber:
         if len(every) == 1:
             return SheetNumber()
         if len(bodies) == 1:
-            return SheetNumber(every.index(bodies[0].name) + 2, len(every) + 1, bodies[0].name)
+            part = bodies[0]
+            number = every.index(part.name) + 2
+            return SheetNumber(number, len(every) + 1, part.name, volume=part.shape.Volume())
         names = tuple((body.name, len(body.places)) for body in bodies)
         return SheetNumber(1, len(every) + 1, "", names)
 
@@ -112,6 +125,7 @@ def title_block(page: Page, header: Header | None, general: General, sheet: Shee
     texts = {
         "sheet": f"{sheet.number}/{sheet.count}",
         "part": sheet.part.replace("_", " "),
+        "mass": sheet.volume_text,
         "language": "en",
         "format": page.plan.format.name,
         "model": model,
@@ -130,16 +144,23 @@ def title_block(page: Page, header: Header | None, general: General, sheet: Shee
         page.line(box, "FRAME")
         page.write(field.caption, left + field.caption_at[0], low + field.caption_at[1], CAPTION)
         text = clipped(texts.get(field.name, ""), field.room, field.letters)
-        is_stamped = field.is_stamped and not (sheet.part and field.name in _OF_THE_WHOLE)
-        if is_stamped or text:
+        mark = _stamped(field, sheet)
+        if mark or text:
             line = page.write(text, left + field.text_at[0], low + field.text_at[1], field.letters)
-            if is_stamped:
-                line.set_xdata(APP, [(1000, f"{MARK}{field.mark}")])
+            if mark:
+                line.set_xdata(APP, [(1000, f"{MARK}{mark}")])
         if field.name == "general":
             general.draw(page, left + field.text_at[0], low + field.text_at[1])
         if field.name == "projection":
             page.symbol(first_angle(4.8).moved(x + 25.0, y + 3.6))
             page.write("first", left + field.text_at[0], low + field.text_at[1], 2.0)
+
+
+def _stamped(field: Field, sheet: SheetNumber) -> str:
+    """Return the mark by which a stamp fills in a field; none if the drawing itself fills it in."""
+    if sheet.part and field.part_mark in STAMPED_OF_PART:
+        return field.part_mark
+    return field.mark if field.is_stamped and not (sheet.part and field.name == "part") else ""
 
 
 def notes(page: Page, header: Header | None, unseen: Sequence[str], general: General) -> None:
@@ -152,8 +173,11 @@ def notes(page: Page, header: Header | None, unseen: Sequence[str], general: Gen
         f"build {header.build[:32]}" if header else "",
         "* no dimension shows it, or its tolerance" if unseen else "",
     ]
-    for row, text in enumerate(filter(None, lines)):
+    written = [*filter(None, lines)]
+    for row, text in enumerate(written):
         page.write(text, left, top - 5.0 * row, 2.5)
+    stamped = page.write("", left, top - 5.0 * len(written), ROUNDED.letters)
+    stamped.set_xdata(APP, [(1000, f"{MARK}{ROUNDED.mark}")])
     y = EDGE + 4.0
     text = f"Ra {TEXTURE:g}"
     reach = width_of(text, 2.5)
@@ -210,8 +234,8 @@ def _value(text: str, limits: Limits | None) -> str:
         return text.removesuffix(IN_TABLE)
     value, is_angle = size
     if is_angle:
-        within = angle_tolerance(text) if is_toleranced(text) else None
-        return " ".join((f"{number_of(value, 6)}°", *([_ends(within)] if within else [])))
+        within = angle_tolerance(text)
+        return " ".join((f"{number_of(value, 6)}°", *([f"{_ends(within)}°"] if within else [])))
     if limits is None:
         return number_of(value, 6)
     return " ".join(filter(None, (number_of(value, 6), limits.zone, _ends(limits))))

@@ -14,6 +14,9 @@ _INSET = 1.5  # from the left side of a field to its text
 MADE_OUT = "iso-"
 """Before the names of fields that a stamp fills in; the lines of older drawings have names without it."""
 
+OF_PART = "part-"
+"""Before the names of fields that a stamp fills in with what is true of one part alone."""
+
 
 @dataclass(frozen=True)
 class Field:
@@ -32,6 +35,11 @@ class Field:
     def mark(self) -> str:
         """Return the name of the field in files, by which a stamp finds it."""
         return MADE_OUT + self.name
+
+    @property
+    def part_mark(self) -> str:
+        """Return its name in files on the sheet of one part, for a stamp."""
+        return OF_PART + self.name
 
     @property
     def room(self) -> float:
@@ -71,8 +79,16 @@ FIELDS = (
     Field("projection", "projection", 145, 0, 35, 9, is_stamped=False),
 )
 
-STAMPED: Mapping[str, Field] = {field.mark: field for field in FIELDS if field.is_stamped}
+ROUNDED = Field("rounded", "", 0, 0, 206, 5)
+"""The note on rounded parameters, to the left of the block; an A3 sheet has so much room for it."""
+
+STAMPED: Mapping[str, Field] = {field.mark: field for field in (*FIELDS, ROUNDED) if field.is_stamped}
 """The fields that a stamp fills in, by their marks."""
+
+STAMPED_OF_PART: Mapping[str, Field] = {
+    field.part_mark: field for field in FIELDS if field.name in ("material", "mass")
+}
+"""The fields that a stamp fills in on the sheet of one part."""
 
 GENERAL = "ISO 2768-mK"
 """General tolerances of sizes, angles and geometry of a drawing without a datum."""

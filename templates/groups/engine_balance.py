@@ -179,11 +179,12 @@ class EngineBalance(EngineCylinders):
         """Cylinders on the same throw share its pin angle."""
         return pins_are_shared(self.layout, self.shares)
 
-    @require("web_positions", "web_unbalance", "counterweights", "web_throws", missing=True,
-             remedy="give `web_positions` as one list, and throws that exist")  # fmt: skip
+    @require("web_positions", "web_unbalance", "web_angles", "counterweights", "counterweight_angles",
+             "web_throws", missing=True, remedy="give `web_positions` as one list, and throws that exist",
+             )  # fmt: skip
     def webs_are_whole(self) -> Truth:
-        """Webs with an unbalance or a counterweight have positions."""
-        return webs_are_whole(self.z_w, self.U_w, self.U_k, self.t_w, self.layout.throws)
+        """Webs with an unbalance, a counterweight or a list of values have positions."""
+        return webs_are_whole(self.z_w, self.U_w, self.a_w, self.U_k, self.a_k, self.t_w, self.layout.throws)
 
     @require("crank_unbalance", "web_unbalance", "counterweights", warning="massless_crank",
              remedy="give `crank_unbalance`, or `web_unbalance`, counterweights and `web_positions`; main "

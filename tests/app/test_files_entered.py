@@ -11,7 +11,7 @@ from benchmarks.function_calls import Calls, counted
 from templates.core.units.units import unit
 
 ROOT = Path(__file__).resolve().parents[2]
-MOST_FILES = 44  # of app, without HTTP, queue and the kernel's process; the aim was 50
+MOST_FILES = 47  # of app, without HTTP, queue and the kernel's process; the aim was 50
 MOST_WITH_HTTP = 45  # of app, for a change of one closed-form step
 MOST_OF_AN_EVALUATION = 20  # of app, with HTTP
 TEMPLATES = {change_to_step: 31, changed_step: 29, evaluation: 27}

@@ -8,7 +8,8 @@ import pytest
 from PIL import Image
 from slow_models import DRAWN
 
-from cad.export import DERIVED, MEDIA_TYPES, derive
+from cad.export import DERIVED, derive
+from cad.file_kinds import MEDIA_TYPES
 from cad.inspect import measure
 from cad.mesh import mesh
 from cad.regenerate import Build

@@ -4,10 +4,12 @@ import io
 import pickle
 from dataclasses import replace
 
+import ezdxf
 import pytest
 from cadquery import Solid, Workplane, exporters
 
 from cad.errors import GeometryError
+from cad.export import derive
 from cad.header import Header
 from cad.imported_models import (
     Description,
@@ -21,7 +23,9 @@ from cad.imported_models import (
 from cad.model import Part
 from cad.model_classes import class_of, description_of
 from cad.regenerate import as_text, build_key, regenerate_shape
+from cad.statements import read_statements
 from cad.step import read_step, write_step
+from cad.tolerances import not_stated
 from templates.core.catalogue.digests import digest
 from templates.core.errors import InvalidInputs
 
@@ -75,6 +79,24 @@ def test_what_was_drawn_is_checked_like_any_model(tmp_path):
     build = regenerate_shape(one, as_text(one))
     assert build.dimensions == {"bore": 21}
     assert build.measures["volume"] == pytest.approx(3.141592653589793 * (20**2 - 10.5**2) * 8, rel=1e-9)
+
+
+def test_a_tolerance_of_a_drawn_model_is_refused_unless_the_table_states_it(tmp_path):
+    text = "21 mm +0.02/-0.01 mm"
+    one = shape(bore=text)
+    (fault,) = not_stated(type(one), one.ledger.typed)
+    assert fault.name == "bore"
+    assert "does not tell which faces" in fault.detail
+    one = shape(bore=f"{text}, in table")
+    assert not [*not_stated(type(one), one.ledger.typed)]
+    one.take(ring(21, tmp_path))
+    build = regenerate_shape(one, as_text(one))
+    assert (build.tolerances["bore"].faces, build.tolerances["bore"].drawn) == ((), "table")
+    assert not [one for one in read_statements(build.step) if one.kind == "dimension"]
+    drawing = ezdxf.read(io.StringIO(derive(build.step, "dxf").decode()))
+    texts = [one.dxf.text for one in drawing.modelspace().query("TEXT")]
+    assert "bore *" in texts
+    assert "21 +0.02/-0.01" in texts
 
 
 def test_a_solid_that_does_not_follow_its_parameter_is_refused(tmp_path):

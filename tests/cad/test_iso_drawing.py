@@ -278,11 +278,17 @@ def test_a_hole_that_no_section_shows_is_broken_out(example_of, id: str, hole: s
     assert len(sides) == 2  # towards the bore and above the blind end; the others lie beyond the part
     assert drawing.layers.get("BREAK").dxf.lineweight < drawing.layers.get("OUTLINE").dxf.lineweight
     assert all(len(side) > 2 for side in sides)
-    left, _, right, _ = extent(sides)
+    left, _, _, _ = extent(sides)
+    breadth = next(value for name, value in build.dimensions.items() if name.endswith("_breadth"))
+    right = max(
+        line.dxf.start.x
+        for line in space.query('LINE[layer=="OUTLINE"]')
+        if line.dxf.start.x < left + breadth
+    )
     hatches = [
         hatch
         for hatch in space.query("HATCH")
-        if extent([hatch])[0] > left - 1e-6 and extent([hatch])[2] < right + 1e-6
+        if left - 1e-6 < extent([hatch])[0] and extent([hatch])[2] < right + 1e-6
     ]
     assert len({hatch.pattern.lines[0].angle for hatch in hatches}) == 2  # both parts, each in its direction
     diameter, spacing = build.dimensions[f"{hole}_diameter"], build.dimensions["bolt_spacing"]
@@ -364,11 +370,10 @@ def test_lengths_that_repeat_are_given_once_and_counted() -> None:
 
 def test_a_leader_keeps_out_of_the_views_where_it_can() -> None:
     room = Room((0, 0, 100, 100))
-    room.add((20, 20, 60, 60), is_view=True)
-    assert room.length_in_views((30, 50), (30, 90)) == pytest.approx(10)
-    assert room.length_in_views((0, 40), (100, 40)) == pytest.approx(40)
-    assert room.length_in_views((0, 70), (100, 70)) == 0
-    assert room.length_in_views((10, 10), (30, 30)) == pytest.approx(10 * 2**0.5)
+    room.add_outline([(20, 20), (60, 20), (60, 60), (20, 60), (20, 20)])
+    assert room.outlines_met((30, 50), (30, 90)) == 1
+    assert room.outlines_met((0, 40), (100, 40)) == 2
+    assert room.outlines_met((0, 70), (100, 70)) == 0
 
 
 @pytest.mark.slow

@@ -226,3 +226,12 @@ def test_the_title_block_names_every_material_where_the_names_of_parts_have_no_r
     assert "a_part_with_a_long_name_5" in stamp.material
     few = Stamp("engine", "bearing", 1, "2026-01-01", {"cap": "iron", "pin": "steel"})
     assert few.fields["material"] == "cap: iron; pin: steel"
+
+
+@pytest.mark.parametrize(
+    ("volume", "mass"), [("904.78 mm³", "0.007962 kg"), ("2.5 dm³", "22 kg"), ("", ""), ("1.2…", "")]
+)
+def test_the_mass_of_a_part_is_its_volume_times_the_density_of_its_material(volume: str, mass: str):
+    parts = {"back": "steel (7850 kg/m³)", "lining": "CuSn8 (8800 kg/m³)"}
+    stamp = Stamp("engine", "bearing", 1, "2026-01-01", parts, part="lining")
+    assert stamp.of_part(volume) == {"material": "CuSn8 (8800 kg/m³)", "mass": mass}

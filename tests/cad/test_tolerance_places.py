@@ -1,6 +1,9 @@
 """Where the files of a build state a tolerance: at faces and a dimension, or in the drawing's table alone."""
 
 import io
+import json
+import subprocess
+from pathlib import Path
 
 import ezdxf
 import pytest
@@ -35,8 +38,8 @@ def throw(**changes):
     return THROW.from_quantities({**THROW.example, **changes})
 
 
-def names(model):
-    return [one.name for one in not_stated(model)]
+def faults(model):
+    return list(not_stated(type(model), model.ledger.typed))
 
 
 @slow_for(*LARGE)
@@ -61,14 +64,14 @@ def test_the_file_and_the_drawing_state_every_tolerance_that_faces_carry(model):
 
 
 def test_a_tolerance_that_no_face_carries_is_named_and_the_remedy_is_accepted():
-    (fault,) = not_stated(throw(journal_length="40 mm ± 0.1 mm", pin_diameter="48 mm h6"))
+    (fault,) = faults(throw(journal_length="40 mm ± 0.1 mm", pin_diameter="48 mm h6"))
     assert (fault.name, fault.code) == ("journal_length", "tolerance_not_stated")
     assert "not the size of a face" in fault.detail
     assert "`, in table`" in fault.detail
     assert "`state_in_table`" in fault.detail
-    assert not names(throw(journal_length=LENGTH))
+    assert not faults(throw(journal_length=LENGTH))
     marked = {"value": 40, "unit": "mm", "plus": 0.1, "minus": 0.1, "state_in_table": True}
-    assert not names(throw(journal_length=marked))
+    assert not faults(throw(journal_length=marked))
     assert as_text(throw(journal_length=marked)) == as_text(throw(journal_length=LENGTH))
 
 
@@ -80,22 +83,22 @@ def test_a_tolerance_that_no_face_carries_is_named_and_the_remedy_is_accepted():
     ],
 )
 def test_the_reason_is_told(changes, reason):
-    (fault,) = not_stated(throw(**changes))
+    (fault,) = faults(throw(**changes))
     assert reason in fault.detail
 
 
 def test_a_list_states_its_tolerance_in_the_table():
     cls = models().get("crankshaft", 1)
     radii = {"value": [70, 0, 0, 0, 0, 70], "unit": "mm", "plus": 0.1, "minus": 0.2}
-    (fault,) = not_stated(cls.from_quantities({**cls.example, "counterweight_radius": radii}))
+    (fault,) = faults(cls.from_quantities({**cls.example, "counterweight_radius": radii}))
     assert "it is a list" in fault.detail
     marked = cls.from_quantities({**cls.example, "counterweight_radius": {**radii, "state_in_table": True}})
-    assert not names(marked)
+    assert not faults(marked)
     texts = as_text(marked)
     assert texts["counterweight_radius"] == "[70, 0, 0, 0, 0, 70] mm +0.1/-0.2 mm, in table"
     assert as_text(cls.from_quantities(texts)) == texts
     each = [{"value": r, "unit": "mm", "plus": 0.1 * (r > 0), "state_in_table": True} for r in radii["value"]]
-    (fault,) = not_stated(cls.from_quantities({**cls.example, "counterweight_radius": each}))
+    (fault,) = faults(cls.from_quantities({**cls.example, "counterweight_radius": each}))
     assert "share one tolerance" in fault.detail
 
 
@@ -139,6 +142,17 @@ def test_a_marked_tolerance_stands_in_the_table_with_an_asterisk_and_among_the_a
     assert "thickness *" not in texts
 
 
+@pytest.mark.slow
+def test_a_marked_tolerance_of_an_angle_stands_in_the_table_in_degrees():
+    cls = models().get("plain_bearing", 1)
+    marked = {"inner_diameter": "48 mm", "shells": "upper", "oil_groove_angle": "100 +2/-1 deg, in table"}
+    texts = as_text(cls.from_quantities({**cls.example, **marked}))
+    drawing = ezdxf.read(io.StringIO(derive(regenerate_class(cls, texts).step, "dxf").decode()))
+    rows = [one.dxf.text for one in drawing.modelspace().query("TEXT")]
+    assert "oil groove angle *" in rows
+    assert "100° +2.0/-1.0°" in rows
+
+
 def test_a_marked_tolerance_of_a_hole_that_is_not_there_stands_in_the_table():
     cls = models().get("thrust_washer", 1)
     texts = as_text(cls.from_quantities({**cls.example, "pin_hole_diameter": "0 mm"}))
@@ -162,3 +176,35 @@ def test_a_row_with_a_marked_tolerance_is_read_again():
     again = THROW.from_quantities(rows)
     assert as_text(again) == as_text(one)
     assert build_key(again) == build_key(one) != build_key(throw(journal_length="40 mm"))
+
+
+FREECAD = Path("/usr/lib/freecad-python3/lib")
+DIAMETERS = """
+import sys
+sys.path.append(sys.argv[1])
+import FreeCAD
+import Part
+shape = Part.Shape()
+shape.read(sys.argv[2])
+(solid,) = shape.Solids
+print([2 * getattr(face.Surface, "Radius", 0.0) for face in solid.Faces])
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not FREECAD.exists(), reason="FreeCAD is not installed (Debian: freecad-python3)")
+def test_faces_have_the_numbers_of_freecad(tmp_path):
+    cls = models().get("thrust_washer", 1)
+    texts = as_text(cls.from_quantities(cls.example))
+    wanted = {name: f"{texts[name]} h9" for name in ("inner_diameter", "outer_diameter", "pin_hole_diameter")}
+    build = regenerate_class(cls, {**texts, **wanted})
+    file = tmp_path / "washer.step"
+    file.write_bytes(build.step)
+    program = ["/usr/bin/python3", "-c", DIAMETERS, str(FREECAD), str(file)]
+    done = subprocess.run(
+        program, capture_output=True, text=True, timeout=120, check=True, env={"PATH": "/usr/bin"}
+    )
+    diameters = json.loads(done.stdout.splitlines()[-1])
+    for name in wanted:
+        ((_, number),) = build.tolerances[name].faces
+        assert diameters[number] == pytest.approx(float(texts[name].split(" ")[0]), abs=1e-6)

@@ -7,7 +7,8 @@ from part21_reader import File
 from slow_models import DRAWN, quick_for
 
 from cad.errors import UnreadableStep
-from cad.export import VALIDATED, derive
+from cad.export import derive
+from cad.file_kinds import VALIDATED
 from cad.header import Header
 from cad.inspect import measure
 from cad.model import CadModel, Part

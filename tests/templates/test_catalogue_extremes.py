@@ -53,6 +53,7 @@ SEIZED = {"thermal_clearance": "diametral_clearance"}
 STEPS = {
     ("combustion_cycle", "peak_pressure_angle"): "of two peaks another becomes the higher",
     ("combustion_cycle", "energy_balance_error"): "below 1e-9 it is 0",
+    ("engine", "rotating_couple_angle"): "a couple that passes through 0 points the other way",
     ("engine", "governing_main"): "it is the number of a bearing",
     ("engine", "governing_elastic_main"): "it is the number of a bearing",
     ("oil_film_cycle", "numerical_error"): "the orbit goes over to a finer ring, by which it is stated",

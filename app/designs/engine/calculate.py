@@ -90,7 +90,7 @@ def recalculated(
     again: Collection[str] = (),
     outputs: Mapping[str, tuple[str, ...]] | None = None,
 ) -> Calculation:
-    """Repeat a calculation with given step outputs [SI]; solids do not change.
+    """Repeat a calculation with given step outputs [SI]; solids and rounded sizes do not change.
 
     Each step is calculated at its level in `levels`, so that no change of level affects the result. Steps in
     `again` are always recalculated, and compute the named `outputs`. Pending values stay pending.
@@ -127,11 +127,16 @@ def _again(result: Calculation, block: Block, outputs: tuple[str, ...] | None) -
 def following(
     calculation: Calculation, changed: Collection[Reference], again: Collection[str] = ()
 ) -> list[Cell | Block]:
-    """Return, in order, the cells and steps that depend on the changed outputs or on the steps in `again`."""
+    """Return, in order, the cells and steps that depend on the changed outputs or on the steps in `again`.
+
+    A rounded size is chosen once, so neither it nor what depends on it alone is among them.
+    """
     moved = dict[Node, None]()
     nodes = list[Cell | Block]()
     for node in calculation.graph.order:
         if isinstance(node, Cell):
+            if node.roundings:
+                continue
             sources = calculation.graph.sources[node]
             is_moved = not (moved.keys().isdisjoint(sources) and _is_disjoint(node, changed))
         elif isinstance(node, Block) and not node.is_model:
@@ -279,6 +284,12 @@ def _typed(result: Calculation, cell: Cell, column: Column) -> TypedQuantity:
     is_of_model = block is not None and block.is_model
     tolerance = tolerance_of(result.graph, cell, result.typed) if is_of_model else None
     return TypedQuantity(np.asarray(scale.from_si(si)).tolist(), scale.text, si, {}, tolerance)
+
+
+def calculated(result: Calculation, cell: Cell) -> Column:
+    """Return the value of a cell before its rounding; its sources have values."""
+    uses = {name: result.used(reference) for name, reference in cell.uses.items()}
+    return _joined(cell.calculated, uses)
 
 
 def _joined(cell: Cell, uses: Mapping[str, Column]) -> Column:

@@ -187,7 +187,9 @@ class Shifts:
         if reference in self.calculation.given:
             return NONE
         if cell := graph.cell(reference):
-            return _joined(self._behind(used) for used in cell.uses.values()) if cell.uses else NONE
+            if cell.roundings or not cell.uses:  # a rounded size is exact: it is chosen, whatever its sources
+                return NONE
+            return _joined(self._behind(used) for used in cell.uses.values())
         block = graph.blocks.get(reference.block)
         if block is None:
             return NONE

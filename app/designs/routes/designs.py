@@ -72,6 +72,11 @@ Within = Annotated[
         description="longest wait [s]; longer calculations are left pending and no job is queued",
     ),
 ]
+Returned = Literal["full", "minimal"]
+ReturnWanted = Annotated[
+    Returned,
+    Query(alias="return", description="`minimal`: without results, for programs that save often"),
+]
 CHANGED = {**later(Design), **refusals(404, 429)}
 
 
@@ -86,6 +91,7 @@ async def answer_saved(
     saved: SaveResult,
     prefer: str | None,
     proposals: Sequence[Proposal] | None = None,
+    wanted: Returned = "full",
 ) -> Response:
     """Return the design: 200 or 201 if its job ended in time, else 202 with the job in Location."""
     done = not saved.is_deferred and await finished(jobs, saved.job, prefer)
@@ -94,6 +100,8 @@ async def answer_saved(
     design = saved.answer
     if design is None:
         design = await run_in_threadpool(designs.show, saved.design, saved.revision)
+    if wanted == "full":
+        design = await run_in_threadpool(designs.with_results, design)
     if proposals is not None:
         design = MappedDesign(**dict(design), proposals=list(proposals))
     return shown(design, status, {"Location": place})
@@ -153,13 +161,14 @@ MERGE_PATCH: JsonDict = {"requestBody": {"content": {"application/merge-patch+js
 async def create_design(
     request: StrictRequest,
     body: DesignIn,
+    wanted: ReturnWanted = "full",
     prefer: Prefer = None,
     idempotency_key: IdempotencyKey = None,
 ) -> Response:
     """Create a design and build its models: 201 when they are ready, 202 while they are being built."""
     raw, note = document_of(body)
     create = services_of(request).designs.create
-    return await _saved(request, prefer, idempotency_key, partial(create, raw, note))
+    return await _saved(request, prefer, idempotency_key, partial(create, raw, note), wanted)
 
 
 @router.get("")
@@ -189,9 +198,10 @@ def list_designs(
 
 
 @router.get("/{id}", response_model=Design, responses=refusals(404))
-def show_design(id: Id, designs: TheDesigns) -> Response:
-    """Return a design at its newest revision, which is also the ETag."""
-    return shown(designs.show(id))
+def show_design(id: Id, designs: TheDesigns, wanted: ReturnWanted = "full") -> Response:
+    """Return a design at its newest revision, which is also the ETag, with its results."""
+    design = designs.show(id)
+    return shown(designs.with_results(design) if wanted == "full" else design)
 
 
 @saves.patch("/{id}", response_model=Design, responses=CHANGED, openapi_extra=MERGE_PATCH)
@@ -199,6 +209,7 @@ async def change_design(
     request: StrictRequest,
     id: Id,
     body: Patch,
+    wanted: ReturnWanted = "full",
     if_match: IfMatch = None,
     prefer: Prefer = None,
     idempotency_key: IdempotencyKey = None,
@@ -209,18 +220,22 @@ async def change_design(
     """
     patch, note = noted(body)
     change = services_of(request).designs.change
-    return await _saved(request, prefer, idempotency_key, partial(change, id, patch, note, if_match))
+    return await _saved(request, prefer, idempotency_key, partial(change, id, patch, note, if_match), wanted)
 
 
 async def _saved(
-    request: StrictRequest, prefer: str | None, key: str | None, save: Callable[[Once], SaveResult]
+    request: StrictRequest,
+    prefer: str | None,
+    key: str | None,
+    save: Callable[[Once], SaveResult],
+    wanted: Returned,
 ) -> Response:
     """Save a design in a thread that may wait for the pool, and return the response."""
     services, client = services_of(request), await get_client(request)
     once = await get_once(request, client, key)
     await expensive_steps(request, client)
     saved = await services.threads.run_within(seconds_waited(prefer), request, save, once)
-    return await answer_saved(services.designs, services.jobs, saved, prefer)
+    return await answer_saved(services.designs, services.jobs, saved, prefer, wanted=wanted)
 
 
 @router.delete("/{id}", status_code=204, responses=refusals(404, 409))

@@ -8,10 +8,10 @@ from fastapi import APIRouter, Depends
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 from starlette.concurrency import run_in_threadpool
 
-from app.api.dependencies import OneStream, TheDatabase, TheJobs
+from app.api.dependencies import OneStream, TheDatabase, TheDesigns, TheJobs
 from app.api.event_streams import LastEvent, allowed, identity, listening
 from app.designs.repository import RegenerationState, can_resume, standing
-from app.designs.routes.designs import Id, show_design
+from app.designs.routes.designs import Id
 from app.http.strict_requests import StrictRoute
 from app.storage.database import Database
 
@@ -21,7 +21,18 @@ router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=Stric
 NAMES = {"queued": "regenerating", "running": "regenerating", "done": "current", "cancelled": "failed"}
 
 
-@router.get("/{id}/events", response_class=EventSourceResponse, dependencies=[Depends(show_design)])
+def existing(id: Id, designs: TheDesigns) -> None:
+    """Refuse the stream of a design that does not exist.
+
+    Raises
+    ------
+    NotFound
+        If there is no such design.
+    """
+    designs.show(id)
+
+
+@router.get("/{id}/events", response_class=EventSourceResponse, dependencies=[Depends(existing)])
 async def watch_design(
     id: Id, database: TheDatabase, jobs: TheJobs, place: OneStream, last: LastEvent
 ) -> AsyncIterator[ServerSentEvent]:

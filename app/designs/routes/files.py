@@ -41,8 +41,7 @@ from app.storage.database import Database
 from app.storage.errors import NotFound
 from app.storage.tables import RevisionModelRow
 from cad.drafting.paper import TYPESETTER
-from cad.export import DRAWINGS, MEDIA_TYPES
-from cad.file_kinds import plain_kind, with_deflection, with_part
+from cad.file_kinds import DRAWINGS, MEDIA_TYPES, plain_kind, with_deflection, with_part
 from cad.file_names import plain_name
 from cad.stamp import STAMPED, Stamp, stamped, takes_stamp
 
@@ -148,7 +147,7 @@ class FileRequest:
             kind = self._stored_kind(wanted)
             is_drawing = plain_kind(kind) in DRAWINGS
             stamp = stamps.signed(session, model, self.owner) if is_drawing else stamps.stamp(session, model)
-            stamp = self.title_block.on(stamp, wanted)
+            stamp = replace(self.title_block.on(stamp, wanted), part=self.part or "")
             return model.build_key or "", kind, stamp, views.file(session, model, kind)
 
     def _stored_kind(self, wanted: str) -> str:

@@ -21,8 +21,8 @@ from app.http.strict_requests import StrictRoute
 from app.schemas.problems import RouteOptions, refusals
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
-from cad.export import MEDIA_TYPES
 from cad.field_mesh import Glb
+from cad.file_kinds import MEDIA_TYPES
 from cad.file_names import name as wide_name
 from cad.file_names import plain_name
 

@@ -9,7 +9,7 @@ from unicodedata import normalize
 from fastapi import Depends, Query
 
 from app.schemas.approval_steps import ORDER
-from cad.export import DRAWINGS, VALIDATED
+from cad.file_kinds import DRAWINGS, VALIDATED
 from cad.stamp import Stamp
 from templates.core.errors import Fault, InvalidInputs
 

@@ -23,7 +23,7 @@ from app.schemas.criteria import Criterion, Verdict
 from app.schemas.problems import Problem
 from app.schemas.values import Given
 from app.solids.schemas.analyses import AnalysisOutput, ModelAnalysis
-from app.solids.schemas.models import Measurements
+from app.solids.schemas.models import Measurements, StatedTolerance
 from templates.core.language.record import Record
 
 State = Literal["current", "regenerating", "failed"]
@@ -111,6 +111,17 @@ class DesignList(Page[DesignSummary]):
     """A page of designs, newest first."""
 
 
+class DesignResults(Answer):
+    """The results of a revision: single outputs of its steps, and its criteria as judged.
+
+    Lists, curves and inputs are in `/designs/{id}/revisions/{number}`.
+    """
+
+    outputs: dict[str, Output] = Field(description="by the names in relations: `film.power_loss`")
+    criteria: list[Criterion] = Field([], description="worst first; absent if there are none")
+    verdict: Verdict | None = Field(None, description="verdict over all criteria; absent without criteria")
+
+
 class Design(Answer):
     """A design at its newest revision: what its user wrote, and the state of its regeneration."""
 
@@ -131,6 +142,9 @@ class Design(Answer):
     )
     assumed: dict[str, AssumedValue] = Field(
         {}, description="parameters whose values were proposed and not changed; absent if there are none"
+    )
+    results: DesignResults | None = Field(
+        None, description="absent while the design is calculated, if it failed, and with `return=minimal`"
     )
     problem: Problem | None = Field(description="why the regeneration failed")
     created: str
@@ -190,6 +204,20 @@ class RevisionModel(Answer):
     build: str | None = Field(description="key of its build; null while parameters are missing")
     artifacts: dict[str, str] = Field(description="SHA-256 of every file, by kind")
     analyses: dict[str, ModelAnalysis]
+    tolerances: dict[str, StatedTolerance] = Field(
+        {},
+        description="where its files state tolerances, by parameter; absent before it is built, or if there "
+        "are none",
+    )
+
+
+class RoundedValue(Answer):
+    """A value that a relation calculates and its rule rounds, or one that only names such a value."""
+
+    name: str
+    rule: str = Field(examples=["rounded up to 0.5 mm"])
+    calculated: Shown = Field(description="before rounding; an array for a list")
+    chosen: Shown = Field(description="the value in use: in solids, steps and criteria")
 
 
 class Round(Answer):
@@ -219,6 +247,7 @@ class Revision(Answer):
     assumed: dict[str, AssumedValue] = Field(
         {}, description="parameters whose values were proposed and not changed; absent if there are none"
     )
+    rounded: list[RoundedValue] = Field([], description="rounded values; absent if there are none")
     warnings: list[Warning] = Field(
         [], description="warnings about parameters of the design and of its models"
     )
@@ -293,6 +322,7 @@ class Preview(Answer):
     model_parameters: dict[str, ParameterChange]
     steps: dict[str, PreviewedStep] | None = None
     parameters: dict[str, Shown] | None = Field(None, description="values of the design's parameters")
+    rounded: list[RoundedValue] = Field([], description="rounded values; absent if there are none")
     criteria: list[Criterion] | None = Field(None, description="worst first; absent if there are none")
     verdict: Verdict | None = Field(None, description="verdict over all criteria; absent without criteria")
 
@@ -320,6 +350,7 @@ class Explanation(Answer):
     kind: str
     value: Shown | None = None
     relation: Given = None
+    rounded: RoundedValue | None = Field(None, description="absent unless a rule rounds the value")
     typed: Given = None
     template: CalculatedBy | Version | None = None
     text: str | None = None

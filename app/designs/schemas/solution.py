@@ -5,7 +5,7 @@ from __future__ import annotations
 from pydantic import Field
 
 from app.calculations.schemas.evaluations import Jump, Root, TracedCurve
-from app.schemas.answers import Answer, Measured, Warning
+from app.schemas.answers import Answer, Measured, Shown, Warning
 from app.schemas.criteria import Word
 
 
@@ -13,6 +13,9 @@ class DesignRoot(Root):
     """A value of the unknown that gives the target, and the verdicts of the design's criteria there."""
 
     verdicts: dict[str, Word] = Field(description="verdict of every criterion at this value, by its name")
+    rounded: Shown | None = Field(
+        None, description="the target with rounded values as chosen; absent if nothing on the way is rounded"
+    )
     error_unknown: list[str] = Field([], description="criteria that are judged from values of unknown error")
 
 

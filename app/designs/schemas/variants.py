@@ -7,12 +7,13 @@ from typing import Literal
 from pydantic import Field
 
 from app.calculations.schemas.evaluations import Output, UsedInput
+from app.designs.schemas.designs import RoundedValue
 from app.designs.schemas.result_table import ResultTable
 from app.schemas.answers import Answer, Shown
 from app.schemas.criteria import Criterion, Verdict, Word
 from app.schemas.problems import Problem
 from app.schemas.values import Given
-from app.solids.schemas.models import Measurements
+from app.solids.schemas.models import Measurements, StatedTolerance
 
 VariantState = Literal["current", "regenerating", "failed"]
 """`failed`: its solid could not be built or measured, see `problem`; other variants are not affected."""
@@ -29,6 +30,11 @@ class VariantModel(Answer):
     parameters: dict[str, Shown] = Field({}, description="every parameter, defaults included")
     artifacts: dict[str, str] = Field({}, description="SHA-256 of every file, by kind")
     measurements: Measurements | None = Field(None, description="absent until the model is built")
+    tolerances: dict[str, StatedTolerance] = Field(
+        {},
+        description="where its files state tolerances, by parameter; absent before it is built, or if there "
+        "are none",
+    )
     problem: Problem | None = Field(None, description="why the model could not be built; else absent")
 
 
@@ -46,6 +52,7 @@ class VariantResult(Answer):
     verdict: Verdict | None = Field(None, description="verdict over all criteria of the variant")
     models: dict[str, VariantModel] = Field({}, description="by name")
     outputs: dict[str, Output] = Field({}, description="requested outputs, by their names in relations")
+    rounded: list[RoundedValue] = Field([], description="rounded values; absent if there are none")
     problem: Problem | None = Field(None, description="why the variant failed; else absent")
 
 
@@ -62,6 +69,7 @@ class VariantDetail(Answer):
         {}, description="inputs of its steps as used, by their names in relations"
     )
     outputs: dict[str, Output] = Field(description="requested outputs, else all, by their names in relations")
+    rounded: list[RoundedValue] = Field([], description="rounded values; absent if there are none")
     criteria: list[Criterion] = Field(
         [], description="criteria of the variant, worst first; absent if there are none"
     )

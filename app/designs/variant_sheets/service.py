@@ -83,7 +83,7 @@ def _faults_of_save(
     incomplete = {cell[0] for fault in listed if (cell := cell_of(fault.name))}
     for _ in range(TRIES):
         try:
-            new = designs.faulty_variants({**raw, "variants": sheet.variants})
+            new = designs.faulty_variants({**raw, "variants": sheet.variants}, raw)
         except InvalidInputs as error:
             new = list(error.faults)
         named = sheet.named(InvalidInputs(new)).faults

@@ -20,6 +20,7 @@ from app.designs.errors import DesignError
 from app.designs.graph import raise_if
 from app.designs.questions import settled
 from app.designs.results import Outcome
+from app.designs.roundings import as_member
 from app.designs.schemas.variants import VariantDetail
 from app.designs.variants.names import BASE
 from app.designs.variants.together import Available, together
@@ -96,6 +97,7 @@ def _shown(wanted: WantedVariant, number: int, outcome: Outcome) -> VariantDetai
             "revision": number,
             "name": wanted.variant,
             "values": outcome.values,
+            **as_member(outcome.calculation),
             "inputs": dict(_inputs(outcome.calculation)),
             "outputs": {name: outputs[name] for name in wanted.outputs or outputs},
             **rendered(worst_first(outcome.judgements)),

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 from sqlalchemy.orm import Session
 
 from app.catalogue.catalogues import Catalogues
-from app.designs import repository
+from app.designs import repository, tolerances
 from app.designs.document import Document
 from app.designs.graph import Graph, build_graph
 from app.designs.result_table import table
 from app.designs.results import TABLE
+from app.designs.roundings import ROUNDED
 from app.designs.schemas.result_table import ResultTable
 from app.designs.schemas.variants import (
     GoverningVariant,
@@ -120,7 +121,7 @@ class _Table:
             for model in self.models.get(name, ())
         }
         parts: JsonObject = {
-            **{part: result[part] for part in ("criteria", "verdict", "problem") if part in result},
+            **{part: result[part] for part in ("criteria", "verdict", "problem", ROUNDED) if part in result},
             **({"outputs": dict(_chosen(result, outputs))} if outputs else {}),
         }
         return VariantResult.model_validate(
@@ -145,6 +146,8 @@ class _Table:
         parts: JsonObject = {"problem": problem} if problem else {}
         if build is not None:
             parts["measurements"] = measures.measurements(**build.measurements).plain()
+            if stated := tolerances.stated(row, build):
+                parts["tolerances"] = stated
         return VariantModel.model_validate(
             {
                 "build": row.build_key,

@@ -30,11 +30,11 @@ from app.solids.schemas.models import Build, Verification
 from app.solids.schemas.models import CadModel as ModelAnswer
 from app.storage.artifacts import Artifacts
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, NotFound
-from cad.export import DRAWINGS, MEDIA_TYPES
-from cad.file_kinds import plain_kind
+from cad.file_kinds import MEDIA_TYPES, SHOWN, plain_kind
 from cad.imported_models import imported_description
 from cad.inspect import MEASURES
 from cad.regenerate import build_key
+from cad.tolerances import not_stated
 from templates.core.errors import Fault, InvalidInputs
 from templates.core.paper.schema import describe
 
@@ -62,9 +62,9 @@ class BuildIn(Bounded):
 
     parameters: Parameters = Field(description='quantities by name: `"48 mm"`; the others have defaults')
     artifacts: list[FileKind] = Field(
-        [kind for kind in MEDIA_TYPES if kind not in DRAWINGS],
+        list(SHOWN),
         max_length=50,
-        description="kinds of files to create; default: all but dimensioned drawings",
+        description="kinds of files to create, besides STEP; by default those that a page shows",
     )
 
 
@@ -154,6 +154,8 @@ async def build_model(
             Fault("artifacts", "unknown_name", f"{k[:40]!r} is not one of {offered}") for k in unknown
         )
     shape = catalogues.models.get(id, number).from_quantities(body.parameters)
+    if faults := [*not_stated(type(shape), shape.ledger.typed)]:
+        raise InvalidInputs(faults)
     kinds = tuple(dict.fromkeys(("step", *body.artifacts)))
     job = await run_in_threadpool(models.request, shape, kinds, client)
     if not await finished(jobs, job, prefer):

@@ -65,6 +65,29 @@ class Measurements(Answer):
     )
 
 
+class PartFace(Answer):
+    """A face of a part in a STEP file."""
+
+    part: str = Field(description="name of the part")
+    face: int = Field(description="number of the face in the part, from 1, as FreeCAD counts (`Face1`)")
+
+
+class StatedTolerance(Answer):
+    """Where the files of a build state the tolerance of a parameter."""
+
+    where: Literal["faces", "table", "nowhere"] = Field(
+        description="`faces`: as PMI at faces of the STEP file; `table`: at no face, only in the table of "
+        "the drawing and among the attributes of the STEP file; `nowhere`: in no file"
+    )
+    drawing: Literal["dimension", "table"] | None = Field(
+        None, description="whether a dimension of the drawing states it or its table alone; absent if neither"
+    )
+    faces: list[PartFace] | None = Field(
+        None, description="faces that carry it; absent if there are none, or if an older program built it"
+    )
+    detail: str = Field(description="the same in words, with the reason if no face carries it")
+
+
 class Build(Answer):
     """A solid of a model: equal parameters are built once."""
 
@@ -73,6 +96,9 @@ class Build(Answer):
     parameters: dict[str, Shown] | None = Field(None, description="every parameter, including defaults")
     artifacts: dict[str, str] = Field(description="SHA-256 of every file, by kind")
     measurements: Measurements | None = Field(description="measurements; null while the build is running")
+    tolerances: dict[str, StatedTolerance] = Field(
+        {}, description="where its files state tolerances, by parameter; absent if there are none"
+    )
 
 
 class BuildUse(Answer):
@@ -94,7 +120,10 @@ class StepStatement(Answer):
         "`perpendicularity` or `parallelism` (width and datum), `attribute`, `volume`, `surface area`, "
         "`centroid`, `density`, `material`"
     )
-    name: str = Field(description="name of the parameter, datum, attribute or part")
+    name: str = Field(
+        description="name of the parameter, datum, attribute or part; a pitch circle is stated by its "
+        "radius, `bolt_circle_diameter/2`"
+    )
     unit: str | None = Field(description="unit of the numbers; null for texts")
     expected: list[float | str] | None = Field(
         description="value in the build; null if it makes no such statement"

@@ -41,7 +41,7 @@ const progress = document.querySelector("[data-progress]");
 const designState = document.querySelector("[data-design-state]").dataset.designState;
 const isJudged = document.querySelector("[data-verdict]").dataset.verdict === "judged"; // the revision has a verdict
 const ofVariants = document.querySelector("[data-governing-variant]"); // the governing variant as saved
-let steps = {}, conflicted = false, isFollowing = false; // the bar shows the job of a revision
+let steps = {}, rounded = new Map(), conflicted = false, isFollowing = false; // the bar shows the job of a revision
 
 const preview = live(
   (signal) => previewed(signal, isFollowing),
@@ -74,6 +74,7 @@ function waiting({ steps }) {
 
 function show(payload) {
   steps = payload.steps;
+  rounded = new Map((payload.rounded ?? []).map((row) => [row.name, row]));
   names.update(payload);
   ofVariants?.classList.toggle("outdated", draft.isChanged());
   if (isJudged || draft.isChanged()) showVerdict(payload);
@@ -82,12 +83,12 @@ function show(payload) {
     if (answer.state === "pending") continue;
     showResults(step, answer);
     showKeys(step, answer);
-    showValues(form, step, answer);
+    showValues(form, step, answer, rounded);
     drawPictures(document, step, answer);
   }
-  showValues(form, "", { inputs: payload.parameters });
+  showValues(form, "", { inputs: payload.parameters }, rounded);
   showWarnings("", payload.warnings.filter(isOfNoStep));
-  showParameters(payload.model_parameters);
+  showParameters(payload.model_parameters, rounded);
 }
 
 // Warnings on the design's own parameters and its models; those of a step are shown in the step.
@@ -217,7 +218,7 @@ function adopt(fold) {
   if (draft.isChanged()) showDraft();
   if (!answer || answer.state === "pending") return;
   showResults(step, answer);
-  showValues(form, step, answer);
+  showValues(form, step, answer, rounded);
   drawPictures(fold, step, answer);
 }
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from fastapi import Request, Response
@@ -22,6 +22,7 @@ from app.designs.schemas.designs import (
     Preview,
     Proposal,
     RevisionWorksheet,
+    RoundedValue,
 )
 from app.designs.schemas.solid_fields import SolidField
 from app.designs.schemas.variants import VariantsOut
@@ -75,7 +76,7 @@ from app.web.tolerances.routes import toleranced
 from app.web.variants.detail import chosen_variant
 from app.web.variants.table import RefusedTable, places_of, variants_table
 from app.web.verdict.banner import Banner, banner, opened, with_keys
-from cad.export import MEDIA_TYPES
+from cad.file_kinds import BY_PART, MEDIA_TYPES
 
 UNFINISHED = ("queued", "running")
 QUICK = 1  # longest wait for steps; the page's script requests slower ones and shows their progress [s]
@@ -128,6 +129,7 @@ async def design_page(
         job=await _job(services, design),
         studies=await studies_of(services, id),
         kinds=list(MEDIA_TYPES),
+        by_part=list(BY_PART),
         loose=_loose([*parameters, *_fields(steps, parts)], faults, wrong),
         refused=bool(faults) or table is not None,
         notice=notice,
@@ -191,6 +193,7 @@ async def _form(request: Request, services: PageServices, design: Design, refusa
     before = await _before(request, services, design)
     tables = await library(services) if templates else []
     verdict = _verdict(revision, design, templates)
+    rounded = by_name(revision.rounded)
     bare = blocks = _blocks(revision, design, templates)
     in_full = steps_in_full(request, design.steps, refusal, verdict) if is_long else None
     if in_full is not None:
@@ -202,18 +205,25 @@ async def _form(request: Request, services: PageServices, design: Design, refusa
         revision = revision.model_copy(update={"steps": {**revision.steps, **whole}})
         blocks = [with_result(block, whole.get(block.name)) for block in blocks]
     steps = [
-        with_fields(block, design, refusal, tables) if in_full is None or block.name in in_full else block
+        with_fields(block, design, refusal, tables, rounded)
+        if in_full is None or block.name in in_full
+        else block
         for block in blocks
     ]
     folded = {} if in_full is None else fold_lines(bare, verdict, f"/designs/{id}")
     parts = [
-        with_changes(block, design, refusal, before, preview.model_parameters if preview else {})
+        with_changes(block, design, refusal, before, preview.model_parameters if preview else {}, rounded)
         for block in models_of(revision, models)
     ]
     typed, faults = refusal.typed, refusal.faults
     values = (preview.parameters if preview else None) or {}
-    parameters = sheet.of_parameters(design.parameters, values, typed, faults, _sources(design))
+    parameters = sheet.of_parameters(design.parameters, values, typed, faults, rounded, _sources(design))
     return Form(revision, preview, parameters, steps, folded, parts, models, verdict, in_full)
+
+
+def by_name(rounded: Sequence[RoundedValue]) -> dict[str, RoundedValue]:
+    """Return rounded values by their names."""
+    return {value.name: value for value in rounded}
 
 
 def _sources(design: Design) -> dict[str, str]:
@@ -258,7 +268,11 @@ async def step_section(request: Request, services: PageServices, id: str, name: 
     templates = await templates_of(services, {name: steps_of_design(design)[name]})
     blocks = steps_of(revision, templates, {name: design.steps[name].outputs})
     tables = await library(services)
-    steps = with_keys([with_fields(block, design, NO_REFUSAL, tables) for block in blocks], revision, design)
+    steps = with_keys(
+        [with_fields(block, design, NO_REFUSAL, tables, by_name(revision.rounded)) for block in blocks],
+        revision,
+        design,
+    )
     (section,) = sections(steps, banner(revision), name, in_full={name})
     return show(request, "design/section.html", section=section)
 

@@ -74,4 +74,14 @@ CRANK: dict[str, JsonValue] = {
         },
         "analyses": {"torsion": {"level": "default"}},
     },
+    "table": {
+        "columns": [
+            "model.torsion.stiffness",
+            "model.mass",
+            "model.polar_inertia",
+            "torsion.natural_frequencies[1]",
+            "life.cycles",
+        ],
+        "changes": True,
+    },
 }

@@ -21,11 +21,10 @@ from app.web.shared import sheet
 from app.web.shared.paths import Id, Number
 from app.web.shared.responses import go, show, units_of
 from app.web.shared.services import PageServices, Refused, ThePageServices, refusals
-from cad.export import MEDIA_TYPES
+from cad.file_kinds import MEDIA_TYPES, SHOWN
 from cad.model import CadModel
 from cad.regenerate import build_key
 
-SHOWN = ("step", "glb")  # created at once; other kinds only on request
 ABOUT = {"units"}
 
 

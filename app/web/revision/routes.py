@@ -26,7 +26,7 @@ from app.web.shared.design_answers import (
 from app.web.shared.paths import Id, Number, Text
 from app.web.shared.responses import show
 from app.web.shared.services import PageServices, Refused, ThePageServices
-from cad.export import MEDIA_TYPES
+from cad.file_kinds import MEDIA_TYPES
 
 REASONS = ("/problems/quarantined", "/problems/unknown-template")
 """Types of the problems for which a version cannot be used now."""

@@ -16,6 +16,7 @@ from app.designs.schemas.designs import (
     Revision,
     RevisionModel,
     RevisionWorksheet,
+    RoundedValue,
 )
 from app.reports.pictures import Picture, pictures
 from app.schemas.answers import Shown
@@ -130,7 +131,11 @@ def with_result(block: StepBlock, written: PreviewedStep | None) -> StepBlock:
 
 
 def with_fields(
-    block: StepBlock, design: Design, refusal: Refusal, tables: Sequence[LibraryTable]
+    block: StepBlock,
+    design: Design,
+    refusal: Refusal,
+    tables: Sequence[LibraryTable],
+    rounded: Mapping[str, RoundedValue],
 ) -> StepBlock:
     """Return a step of a design with the fields of its form; `tables` are the tables of the library."""
     step, template, result = design.steps[block.name], block.template, block.result
@@ -140,7 +145,7 @@ def with_fields(
     return replace(
         block,
         fields=with_rows(
-            sheet.of_block(template.inputs, block.name, step.inputs, used, typed, faults), tables
+            sheet.of_block(template.inputs, block.name, step.inputs, used, typed, faults, rounded), tables
         ),
         options=sheet.of_options(template, block.name, chosen, typed, faults),
         limits=limit_fields(template, block.name, step.limits, typed, faults, tables),
@@ -158,6 +163,7 @@ def with_changes(
     refusal: Refusal,
     before: Revision | None,
     previewed: Mapping[str, ParameterChange],
+    rounded: Mapping[str, RoundedValue],
 ) -> ModelBlock:
     """Return a model of a design with the fields of its form, and its changes since the previous revision."""
     name, values, schema = block.name, block.values, block.model.parameters
@@ -165,7 +171,7 @@ def with_changes(
     status = {tail: _status(previewed.get(f"{name}.{tail}")) for tail in values}
     return replace(
         block,
-        fields=sheet.of_block(schema, name, cells, values, refusal.typed, refusal.faults),
+        fields=sheet.of_block(schema, name, cells, values, refusal.typed, refusal.faults, rounded),
         old=_changed(before.models.get(name) if before else None, values),
         status=status or dict.fromkeys(required(schema), "missing"),
     )

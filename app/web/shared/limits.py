@@ -69,7 +69,7 @@ def _field(name: str, control: str, declared: DeclaredValue) -> Field:
         text="",
         error=None,
         unit=declared.unit,
-        hint="by the row above" if declared.filled_by else default,
+        hint="from the material" if declared.filled_by else default,
         needed=False,
     )
 

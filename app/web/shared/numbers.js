@@ -29,6 +29,9 @@ export function quantityText(quantity) {
   return [written(quantity.value), unit(quantity.unit), remark(quantity.value)].filter(Boolean).join(" ");
 }
 
+// Return a rounded value: calculated 23.47 mm → chosen 23.5 mm.
+export const roundedText = ({ calculated, chosen }) => `calculated ${quantityText(calculated)} → chosen ${quantityText(chosen)}`;
+
 function written(value) {
   if (typeof value === "number") return plain(value);
   if (!Array.isArray(value)) return String(value);

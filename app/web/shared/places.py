@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import inf
 
+from app.designs.analyses import is_table
 from app.designs.schemas.designs import Design, ModelMeasurements, Preview, RevisionWorksheet
 from app.designs.schemas.network import DesignNetwork, NetworkName
 from app.presentation import numbers
@@ -94,6 +95,12 @@ def related(design: Design) -> list[str]:
 def outputs(network: DesignNetwork) -> list[NetworkName]:
     """Return the outputs of all steps."""
     return [name for name in network.names if name.role == "output"]
+
+
+def measured(network: DesignNetwork) -> list[NetworkName]:
+    """Return the single measures of all solids, and the single outputs of their analyses."""
+    names = (name for name in network.names if name.role == "measure")
+    return [name for name in names if not is_table(Reference.parse(name.name))]
 
 
 def suggested(place: PlaceOption) -> tuple[str, str]:

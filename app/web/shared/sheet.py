@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 
 from app.catalogue.schemas.declarations import DeclaredValue, properties, required
 from app.catalogue.schemas.templates import Schema, Template
+from app.designs.schemas.designs import RoundedValue
 from app.presentation import numbers
 from app.presentation.input_text import text_of
 from app.schemas.values import Given
 from app.web.shared.forms import OPTIONS
 from templates.core.units.relation import is_relation
+
+NOTHING_ROUNDED: Mapping[str, RoundedValue] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
@@ -28,6 +32,7 @@ class Field:
     hint: str = ""
     options: tuple[str, ...] = ()
     value: object = None  # result of a relation, or a default; None if the text states the value
+    rounded: RoundedValue | None = None  # how a rule rounds the value
     needed: bool = True
     is_list: bool = False  # whether it has several values, to be edited item by item or pasted
     own: bool = False  # whether it is a design's own parameter, which has only its name
@@ -57,6 +62,7 @@ def of_block(
     values: Mapping[str, object],
     typed: Mapping[str, str],
     faults: Mapping[str, str],
+    rounded: Mapping[str, RoundedValue] = NOTHING_ROUNDED,
 ) -> list[Field]:
     """Return the fields for a step's inputs, or a model's parameters, in the order of their declarations.
 
@@ -68,7 +74,8 @@ def of_block(
         name = f"{block}.{tail}" if block else tail
         text = typed.get(name, text_of(cells.get(tail)))
         shown = None if text and not is_relation(text) else values.get(tail)
-        fields.append(_field(name, declared, text, shown, faults.get(name), tail in needed))
+        one = _field(name, declared, text, shown, faults.get(name), tail in needed)
+        fields.append(replace(one, rounded=rounded.get(name) if shown else None))
     return fields
 
 
@@ -77,6 +84,7 @@ def of_parameters(
     values: Mapping[str, object],
     typed: Mapping[str, str],
     faults: Mapping[str, str],
+    rounded: Mapping[str, RoundedValue] = NOTHING_ROUNDED,
     assumed: Mapping[str, str] | None = None,
 ) -> list[Field]:
     """Return the fields for a design's own parameters; `assumed` are the sources of proposed values."""
@@ -88,6 +96,7 @@ def of_parameters(
             text=typed.get(f".{name}", text_of(cell)),
             error=faults.get(name),
             value=values.get(name) if is_relation(cell) else None,
+            rounded=rounded.get(name) if is_relation(cell) else None,
             own=True,
             assumed=(assumed or {}).get(name, ""),
         )
@@ -155,7 +164,7 @@ def _hint(declared: DeclaredValue) -> str:
     if declared.has_default:
         return numbers.in_line(declared.default)
     if declared.default_formula is not None:
-        return "follows from the rest"
+        return "calculated"
     example = next(iter(declared.examples), None)
     return f"such as {text_of(example)}" if example is not None else "not given"
 

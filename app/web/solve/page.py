@@ -189,6 +189,7 @@ class SavedRoot(ShownRoot):
 
     open: list[tuple[str, str, str]]  # criteria that are not met or undecided, with verdict and its words
     rest: str  # how many are met, and not checked
+    rounded: str  # the target with the chosen values; empty if nothing is rounded
     field: str
     note: str
 
@@ -207,6 +208,7 @@ def _saved(design: Design, solution: DesignSolution) -> list[SavedRoot]:
             **vars(ShownRoot.of(root)),
             open=sorted((n, v, _words(root, n)) for n, v in root.verdicts.items() if v in OPEN),
             rest=_counted(root),
+            rounded=f"{numbers.in_line(root.rounded)} with the chosen values" if root.rounded else "",
             field=control,
             note=f"solved for {target}",
         )

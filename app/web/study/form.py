@@ -18,7 +18,7 @@ from app.presentation.input_text import text_of, value_of
 from app.reference import Reference
 from app.schemas.criteria import Criterion
 from app.studies.schemas import StudyEstimate
-from app.web.shared.places import outputs, present, set_aside, suggested, varied
+from app.web.shared.places import measured, outputs, present, set_aside, suggested, varied
 from app.web.shared.responses import show
 from app.web.shared.services import PageServices, Refused
 
@@ -161,7 +161,7 @@ async def study_form(
             inf, services.previews.in_parts, PreviewRequest(id, {}, False, "si"), services.client
         )
     )[0]
-    places, named = varied(design, network), outputs(network)
+    places, named = varied(design, network), [*outputs(network), *measured(network)]
     aside = set_aside(design, network, places, present(revision, preview))
     bounds = {place.name: suggested(place) for place in (*places, *aside)}
     return show(
@@ -212,7 +212,7 @@ def _judged(revision: RevisionWorksheet, named: list[NetworkName]) -> set[str]:
 
 
 def _by_step(named: list[NetworkName]) -> dict[str, list[NetworkName]]:
-    """Return outputs by step, in the order of the design."""
+    """Return outputs and measures by step and model, in the order of the design."""
     groups: dict[str, list[NetworkName]] = {}
     for name in named:
         groups.setdefault(Reference.parse(name.name).block, []).append(name)

@@ -236,6 +236,9 @@ def read_comparison(text: str) -> tuple[Relation, Sign, Relation]:
         )
         raise FaultyText("index", detail)
     for side in (value, limit):
+        if side.rounding:
+            remedy = f"make {excerpt(side.text)} a parameter of the design and compare that"
+            raise FaultyText("syntax", f"a side of a criterion cannot be rounded; {remedy}")
         if side.has_conditions or side.has_lists:
             what, code = ("condition", "no_truth") if side.has_conditions else ("list", "shape")
             remedy = f"make {excerpt(side.text)} a parameter of the design and compare that"

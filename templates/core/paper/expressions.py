@@ -78,7 +78,9 @@ def relation_latex(raw: object) -> str:
         return ""
     if relation is None or relation.only_name or depth_of(relation.tree) > DEEPEST_ON_PAPER:
         return ""
-    return latex(relation.tree, {})
+    written = latex(relation.calculated.tree, {})
+    rule = relation.rounding.words if relation.rounding else ""
+    return rf"{written}\quad {_words(rule.translate(_NO_LATEX))}" if rule else written
 
 
 class _Writer:

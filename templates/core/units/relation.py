@@ -4,11 +4,12 @@ A relation derives a value of a design from others, like a cell of a spreadsheet
 one blank, and contains no blank; every other word is a name. Units are checked before any calculation: a
 length can only be added to a length, an exponent is a pure number, and `degC` is an absolute temperature,
 which cannot be added. `loads.main_load_x[2]` is the second item of an array along its first axis: one of
-several curves.
+several curves. A relation may end in a rule by which its value is rounded: `rounded up to 0.5 mm`.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
@@ -25,12 +26,14 @@ from templates.core.units.evaluation import LISTWISE, applied_in, nodes_of, valu
 from templates.core.units.expressions import GRAMMAR, Sort, built, height
 from templates.core.units.items import check_index, item_of
 from templates.core.units.operations import Apply, Constant, Item, Kind, Name, Word
+from templates.core.units.rounding import Rounding
 from templates.core.units.sorts import sorted_by
 from templates.core.units.units import Value, forget_units, unit
 
 __all__ = ["Kind", "Relation", "is_relation", "parse"]
 
 MAX_LENGTH, MAX_DEPTH, MAX_PARTS = 2000, 100, 400
+ROUNDED = "rounded"  # the word that begins a rule of rounding, which no unit or number after it contains
 REMEMBERED = 1024  # trees of up to 50 kB
 
 _parser = lark.Lark(GRAMMAR, parser="lalr", cache=definition_cache.file("relation.grammar"))
@@ -41,7 +44,8 @@ class Relation:
     """A parsed relation: its text, the names it uses, and its tree.
 
     `choices` are those names that it tests, as in `film.oil is "SAE 30"`; all others are quantities. In a
-    relation that is `decided_by` some choices, the chosen words replace these names.
+    relation that is `decided_by` some choices, the chosen words replace these names. A `rounding` is the last
+    operation of the tree.
     """
 
     text: str
@@ -51,6 +55,7 @@ class Relation:
     items: tuple[Item, ...] = ()
     choices: frozenset[str] = frozenset()
     decided_by: tuple[str, ...] = ()
+    rounding: Rounding | None = None
 
     @cached_property
     def whole_names(self) -> frozenset[str]:
@@ -63,6 +68,14 @@ class Relation:
     def only_name(self) -> str | None:
         """Return the name if the relation consists of a single name, else None."""
         return self.tree.name if isinstance(self.tree, Name) else None
+
+    @cached_property
+    def calculated(self) -> Relation:
+        """Return the relation without its rounding, also in its text."""
+        if self.rounding is None:
+            return self
+        bare = self.text[: self.text.rindex(ROUNDED)].rstrip()
+        return replace(self, text=bare, tree=self.tree.arguments[0], rounding=None)
 
     @cached_property
     def tests(self) -> tuple[tuple[str, str], ...]:
@@ -176,7 +189,7 @@ def parse(text: str) -> Relation:
         raise FaultyText(
             "syntax", f"a relation must have at most {MAX_PARTS} parts, nested at most {MAX_DEPTH} deep"
         )
-    tree = built(parsed)
+    tree, rounding = _rounded(parsed)
     nodes = list(nodes_of(tree))
     items = tuple(dict.fromkeys(node for node in nodes if isinstance(node, Item)))
     names = {node.name for node in nodes if isinstance(node, (Item, Name))}
@@ -185,7 +198,16 @@ def parse(text: str) -> Relation:
     numbers = {str(t.children[0]) for kind in ("name", "item") for t in parsed.find_data(kind)}
     if both := choices & numbers:
         raise FaultyText("syntax", f"{min(both)[:60]} is a choice in one place and a quantity in another")
-    return Relation(text.strip(), frozenset(names), tree, parts, items, choices)
+    return Relation(text.strip(), frozenset(names), tree, parts, items, choices, rounding=rounding)
+
+
+def _rounded(parsed: lark.Tree[Any]) -> tuple[Any, Rounding | None]:
+    """Return the checked tree of a relation, and its rounding."""
+    if parsed.data != "rounded":
+        return built(parsed), None
+    expression, _, *direction, step = parsed.children
+    rounding = Rounding.read(str(step), "up" if direction == ["up"] else "down" if direction else "nearest")
+    return Apply(rounding.operation, (built(expression),)), rounding
 
 
 def _where(body: str, error: lark.exceptions.UnexpectedInput) -> str:
@@ -193,6 +215,9 @@ def _where(body: str, error: lark.exceptions.UnexpectedInput) -> str:
     place = None if is_at_end else getattr(error, "pos_in_stream", None)
     near = body[place : place + 20] if isinstance(place, int) and place >= 0 else ""
     hint = "write units like `48 mm`, names like `film.bearing_diameter`, and operators `+ - * / **`"
+    if re.search(rf"\b{ROUNDED}\b", body):
+        rules = f"`{ROUNDED} to 0.5 mm`, `{ROUNDED} up to 0.5 mm` or `{ROUNDED} down to 0.5 mm`"
+        hint = f"a relation may end in a rule of rounding: {rules}"
     return f"not understood at {excerpt(near)}; {hint}" if near else f"the relation ends too early; {hint}"
 
 

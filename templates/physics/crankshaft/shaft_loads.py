@@ -116,11 +116,15 @@ def has_one_for_each_main(stiffness: Array, mains: Array) -> Truth:
     return np.ndim(stiffness) == 0 or np.ndim(mains) == 0 or np.shape(stiffness) == np.shape(mains)
 
 
-@units("m", "kg*m", "kg*m", "1", None, returns="1")
-def webs_are_whole(places: Array, unbalance: Array, counterweight: Array, throws: Array, count: int) -> Truth:
-    """Return whether webs with an unbalance have positions and, if a throw is named, one that exists."""
+@units("m", "kg*m", "rad", "kg*m", "rad", "1", None, returns="1")
+def webs_are_whole(
+    places: Array, unbalance: Array, angle: Array, counterweight: Array, its_angle: Array, throws: Array,
+    count: int,
+) -> Truth:  # fmt: skip
+    """Return whether webs with an unbalance or a list have positions, and named throws exist."""
     if np.ndim(places) == 0:
-        return bool(np.all(unbalance == 0) and np.all(counterweight == 0))
+        listed = any(np.ndim(one) for one in (unbalance, angle, counterweight, its_angle, throws))
+        return not listed and bool(unbalance == 0 and counterweight == 0)
     named = np.ndim(throws) == 0 or bool(np.all(throws <= count))
     return np.ndim(places) == 1 and named
 

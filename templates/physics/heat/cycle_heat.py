@@ -11,6 +11,7 @@ over circumference and cycle.
 
 P rises with the viscosity, and the film's temperature with P, so there is one root in ln(eta). The viscosity
 at the supply temperature is divided by four repeatedly until it is too low: the last step brackets the root.
+If there is no orbit at an end of that step, the step is halved.
 
 References
 ----------
@@ -49,6 +50,8 @@ LEVELS = ("mobility_short", "mobility", "mobility_grooved")
 _STEPS = 6
 _STEP = float(np.log(4))
 """Largest number and size (in ln) of the steps by which the search lowers the supply viscosity."""
+_HALVINGS = 10
+"""Largest number of halvings of a step at one end of which there is no orbit."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -200,25 +203,26 @@ def cycle_heat(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
 
 
 def _bracket(lack: Callable[[Array], Array], top: Array, load: Array) -> tuple[Array, Array]:
-    """Return the step in ln below the supply viscosity that brackets the root; NaN if none does.
+    """Return two values of ln(viscosity) with the root between them; NaN if there are none.
 
-    If the load is so light that no orbit is found at the supply viscosity, there may be one at a lower
-    viscosity.
+    Both are the supply viscosity `top` if it is too low already. Above the root the load may be so light that
+    no orbit is found, below it so heavy that none is: then the interval is halved until both ends have one.
     """
-    low, high = np.full(top.shape, np.nan), np.full(top.shape, np.nan)
-    at, above = top, top
-    for _ in range(_STEPS + 1):
+    low, high, at = np.full(top.shape, np.nan), np.full(top.shape, np.nan), top
+    low_known, high_known, found = (np.zeros(top.shape, bool) for _ in range(3))
+    for _ in range(_STEPS + _HALVINGS + 1):
         missing = lack(at)
         with np.errstate(invalid="ignore"):
-            found = missing >= 0
-            light = np.isnan(missing) & (load < np.exp(at))
-            low, high = np.where(found, at, low), np.where(found, above, high)
-            above = np.where(light, np.nan, at)
-            at = np.where(light | (missing < 0), at - _STEP, np.nan)
+            below = (missing >= 0) | (np.isnan(missing) & (load >= np.exp(at)))
+            above = (missing < 0) | (np.isnan(missing) & (load < np.exp(at)))
+        low, low_known = np.where(below, at, low), np.where(below, missing >= 0, low_known)
+        high, high_known = np.where(above, at, high), np.where(above, missing < 0, high_known)
+        found = low_known & (high_known | (low == top))
+        at = np.where(np.isnan(low), at - _STEP, (low + high) / 2)
+        at = np.where(found | (at < top - (_STEPS + 0.5) * _STEP), np.nan, at)
         if np.isnan(at).all():
             break
-    high = np.where(np.isnan(high) & (low < top), low + _STEP, high)
-    return low, np.where(low == top, top, high)
+    return np.where(found, low, np.nan), np.where(found, np.where(low == top, top, high), np.nan)
 
 
 def heaviest(duty: Duty) -> Array:

@@ -128,7 +128,7 @@ def test_a_failed_revision_is_not_signed(room):
     assert "failed" in refused["detail"]
     bare = created(room.author, {"name": "bare", "model": {"id": "ball_bearing", "version": 1}})
     refused = problem(sign(room.author, bare, "calculated"), 409, "not-ready-to-sign")
-    assert "has no solid of model" in refused["detail"]
+    assert "model has no solid" in refused["detail"]
 
 
 def test_a_later_change_supersedes_the_released_revision(room, design):

@@ -60,6 +60,51 @@ def test_a_model_takes_the_value_of_an_earlier_one_but_never_in_a_loop(http):
     assert not [target for target in proposed(http, document) if target.startswith("shaft.")]
 
 
+@pytest.mark.parametrize("names", [("assembly", "shell"), ("unit", "inlay")])
+def test_models_share_labels_whatever_their_order(http, names):
+    """The journal diameter of an assembly and the bore of a shell are both called bearing diameter."""
+    whole, shell = names
+    document = {
+        "name": "assembly and shell",
+        "models": {
+            whole: {"id": "bearing_assembly", "parameters": {"journal_diameter": "48 mm", "width": "20 mm"}},
+            shell: {"id": "plain_bearing"},
+        },
+    }
+    relations = proposed(http, document)
+    assert relations[f"{shell}.inner_diameter"] == f"= {whole}.journal_diameter"
+    assert relations[f"{shell}.width"] == f"= {whole}.width"  # both are also called bearing width
+    assert not [target for target in relations if target.startswith(f"{whole}.")]
+
+
+def test_two_parts_of_a_kind_are_not_tied_by_general_names(http):
+    document = {
+        "name": "two bushes",
+        "models": {
+            "one": {"id": "flanged_bush", "parameters": {"wall": "2 mm", "inner_chamfer": "1 mm"}},
+            "other": {"id": "flanged_bush"},
+        },
+    }
+    assert not {"other.wall", "other.outer_diameter"} & proposed(http, document).keys()
+
+
+def test_proposals_close_no_loop_among_themselves(http):
+    """Each has what the other lacks; only one direction is proposed, and the design accepts all proposals."""
+    document = {
+        "name": "mutual",
+        "models": {
+            "shaft": {"id": "crankshaft", "parameters": {"pin_length": "30 mm"}},
+            "crank": {"id": "crank_throw", "parameters": {"journal_diameter": "50 mm"}},
+        },
+    }
+    relations = proposed(http, document)
+    both = {"shaft.journal_diameter": "= crank.journal_diameter", "crank.pin_length": "= shaft.pin_length"}
+    assert len(both.items() & relations.items()) == 1
+    design = created(http, document)
+    answer = http.post(f"{DESIGNS}/{design['id']}/auto-map?apply=true", headers={"If-Match": '"1"'})
+    assert answer.status_code == 200, answer.text
+
+
 @pytest.mark.parametrize("engine", ["flywheel", "bearing_load"])
 def test_the_bore_of_a_cylinder_is_not_that_of_a_shell(http, engine):
     document = {

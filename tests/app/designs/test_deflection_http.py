@@ -1,5 +1,8 @@
 """`model.stl?deflection=…` returns a mesh of the requested fineness, or a refusal with the valid values."""
 
+import re
+from math import pi
+
 import pytest
 from serving import API, created, faults, moody, problem
 
@@ -61,3 +64,23 @@ def test_what_is_no_part_is_refused_by_name(http, design):
 
 def test_an_unknown_design_is_reported_before_a_wrong_deflection(http):
     problem(http.get(f"{API}/designs/none/model.stl", params={"deflection": "much"}), 404, "not-found")
+
+
+def test_the_drawing_of_one_part_states_its_own_material_and_mass(http):
+    """A ball of 12 mm: π/6 · 12³ mm³ at 7850 kg/m³ is 7.103 g; the rings are not in it."""
+    bearing = {"id": "ball_bearing", "version": 1, "parameters": {"inner_diameter": "50 mm"}}
+    design = created(http, {"name": "ball", "model": bearing})
+    svg = mesh_of(http, design, "drawing.svg", part="ball")
+    assert svg.status_code == 200, svg.text
+    assert "_ball.drawing.svg" in svg.headers["content-disposition"]
+    diameter = float(re.search(r"Ø([0-9.]+)<", svg.text)[1])
+    assert re.search(r'data-stamp="part-mass"[^>]*>([0-9.]+) kg<', svg.text)[1] == (
+        f"{pi / 6 * diameter**3 * 7850e-9:.4g}"
+    )
+    assert re.search(r'data-stamp="part-material"[^>]*>([^<]*)<', svg.text)[1] == "steel (7850 kg/m³)"
+    whole = mesh_of(http, design, "drawing.svg")
+    assert 'data-stamp="part-mass"' not in whole.text
+    dxf = mesh_of(http, design, "dxf", part="ball")
+    assert f"{pi / 6 * diameter**3 * 7850e-9:.4g} kg" in dxf.text
+    assert mesh_of(http, design, "drawing.pdf", part="ball").content.startswith(b"%PDF")
+    assert faults(mesh_of(http, design, "drawing.svg", part="cage")) == {"part": "unknown_part"}

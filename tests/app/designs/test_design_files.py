@@ -16,6 +16,7 @@ from serving import API, created, paper, patched, problem, revision
 from app.cli.main import main
 from app.client import File
 from app.storage.tables import ArtifactRow, BuildRow, RevisionModelRow
+from cad.file_kinds import BY_PART, MEDIA_TYPES, SHOWN
 from cad.part21 import plain
 from cad.stamp import is_copy
 from cad.step import read_step
@@ -100,6 +101,21 @@ def test_the_drawing_on_paper_says_whose_it_is(http, design):
     assert get(http, design, "models/shell/model.drawing.pdf").content == answer.content
     same = http.get(answer.url, headers={"If-None-Match": answer.headers["etag"]})
     assert same.status_code == 304
+
+
+def test_a_build_creates_the_kinds_that_a_page_shows_and_those_that_are_asked_for(http):
+    build = f"{API}/models/plain_bearing/versions/1/build"
+    body = {"parameters": {**BUSH, "inner_diameter": "31.125 mm"}}
+    plain = http.post(build, json=body, headers=WAIT).json()
+    assert plain["artifacts"].keys() == {*SHOWN} == {"step", "glb"}
+    more = http.post(build, json={**body, "artifacts": ["brep"]}, headers=WAIT).json()
+    assert more["artifacts"].keys() == {"step", "glb", "brep"}
+
+
+def test_the_command_lists_every_kind_of_file():
+    text = " ".join(CliRunner().invoke(main, ["download", "--help"]).output.split())
+    assert all(f"{kind}, " in text or f"{kind};" in text for kind in MEDIA_TYPES)
+    assert all(kind in text.partition("--part")[2].partition("--variant")[0] for kind in BY_PART)
 
 
 def test_builds_and_artifacts_are_shared_and_stay(http, design):

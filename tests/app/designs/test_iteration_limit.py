@@ -8,6 +8,7 @@ import pytest
 from app.designs import regeneration
 from app.designs.document import Iteration
 from app.designs.errors import NotConverged
+from app.designs.network import Graph
 from app.designs.regeneration import Regeneration
 from app.designs.service import DocumentCalculation
 from app.reference import Reference
@@ -48,7 +49,7 @@ def settle(monkeypatch):
         monkeypatch.setattr(regeneration, "_measure", measure)
         document = SimpleNamespace(iterations=list(iterations))
         assumed = {Reference.parse(one.through): 1.0 for one in iterations}
-        calculation = SimpleNamespace(graph=None, assumed=assumed)
+        calculation = SimpleNamespace(graph=Graph({}, {}, frozenset()), assumed=assumed)
         return Circling()._settled(DocumentCalculation(document, calculation), context=None)
 
     return settle

@@ -121,6 +121,14 @@ def reversed_part(d):  # a part whose faces point inwards
     d.document.addObject("Part::Feature", "Reversed").Shape = shape
 
 
+def loose(d):  # a part with a face beside its solid, a face alone, and two parts that overlap
+    face = Part.makePlane(5, 5, FreeCAD.Vector(0, 0, 50))
+    d.document.addObject("Part::Feature", "Mixed").Shape = Part.makeCompound([Part.makeBox(10, 10, 10), face])
+    d.document.addObject("Part::Feature", "Sheet").Shape = face
+    d.box("Beside", "20 mm", "5 mm", "10 mm", "10 mm")
+    d.document.recompute()
+
+
 for name, kind, sizes in json.loads(sys.argv[3]):
     drawn = Document(name, sizes)
     globals()[kind](drawn)

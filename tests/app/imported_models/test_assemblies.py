@@ -7,7 +7,7 @@ from math import pi, sqrt
 import pytest
 from cadquery import Location, Vector, Workplane
 from freecad_files import ended, imported, post
-from serving import API, created, faults, paper, patched
+from serving import API, created, faults, paper, patched, revision
 
 from app.imported_models.assemblies import AssemblyFiles
 from app.maintenance.rows import SENT
@@ -341,3 +341,18 @@ def test_a_clearance_askew_is_that_of_geometry():
     (two,) = clearances([near, inside], lambda name: name)
     assert two.overlap == pytest.approx(4 / 3 * pi, rel=1e-6)
     assert not list(clearances([near, far], lambda name: None))
+
+
+def test_a_toleranced_place_of_a_step_part_is_stated_in_the_table(http, assembly):
+    given = {"journal_diameter": "48 mm h6", "bolt_z": "1.25 ± 0.2 mm"}
+    document = {"name": "bolted", "models": {"bearing": {"id": "bolted_bearing", "parameters": given}}}
+    assert faults(http.post(f"{API}/designs", json=document)) == {"bearing.bolt_z": "tolerance_not_stated"}
+    given["bolt_z"] += ", in table"
+    design = created(http, document)
+    assert design["state"] == "current", design["problem"]
+    stated = revision(http, design)["models"]["bearing"]["tolerances"]
+    assert {name: (one["where"], one["drawing"]) for name, one in stated.items()} == {
+        "bolt_z": ("table", "table"),
+        "journal_diameter": ("faces", "table"),
+    }
+    assert "built-in models only" in stated["journal_diameter"]["detail"]

@@ -30,6 +30,7 @@ def files():
             "ring": ("ring", {"bore": "20 mm"}),
             "reversed": ("reversed_part", {"unused": "1 mm"}),
             "tied": ("tied", {"length": "30 mm"}),
+            "loose": ("loose", {"unused": "1 mm"}),
         }
     )
 
@@ -80,6 +81,16 @@ def test_a_number_without_unit_says_what_it_moves(here, files):
     described_class = here.built(described, d1="25")
     assert described_class.dimensions["d1"] == 25
     assert "move nothing: unused" in described.trust
+
+
+def test_loose_faces_and_overlaps_are_reported(here, files):
+    described = here.described(files["loose"])
+    assert [name for name, _ in described.ends.parts] == ["Mixed", "Beside"]
+    findings = " ".join(described.findings)
+    assert "Mixed has faces that belong to no solid; they are left out (1)" in findings
+    assert "Sheet has faces, but no solid; it is left out" in findings
+    assert "Solids overlap, so volume and mass count the common space twice" in findings
+    assert described.overlapping == (("Mixed", "Beside"),)
 
 
 def test_a_part_that_is_turned_inside_out_is_refused(here, files):

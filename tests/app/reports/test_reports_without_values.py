@@ -52,7 +52,7 @@ def revision_of(document):
     if calculation.faults:
         return None
     kept = results.stored(calculation, [])
-    del kept["analyses"], kept["table"]
+    del kept["analyses"]
     names = {"design": "d", "number": 1, "name": document.name, "parameters": {}, "models": {}}
     return Revision.model_validate({**names, **SI, **kept})
 

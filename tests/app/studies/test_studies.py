@@ -186,7 +186,7 @@ def test_the_search_ends_at_the_limit_that_it_holds(http, held):
     assert best["at"]["length"]["value"] == pytest.approx(2.5, rel=1e-6)
     assert best["verdicts"] == {"long_enough": "met"}
     assert (best["error_unknown"], best["confirmed"]) == (["long_enough"], False)  # nobody measured `double`
-    assert "error of the confirming levels is unknown" in result["notes"][0]
+    assert "error of its confirmation is unknown" in result["notes"][0]
     assert result["notes"][1:] == ["the optimum sits on the limit of long_enough"]
     assert result["trade"][0]["confirmed"][OUT]["value"] == pytest.approx(5, rel=1e-6)
     row = rows(http, study, sort=OUT, where="met", limit=1)["items"][0]

@@ -126,7 +126,7 @@ class TestPlaces:
         )
         assert (housing.radius, housing.half_width, housing.held_at) == (26.4, 11.5, 70)
         assert housing.held_radius is None
-        assert (rod.radius, rod.held_at, rod.held_radius) == (25.9, 144, 11)
+        assert (rod.radius, rod.held_at, rod.held_radius) == (25.9, 144, 10.5)
         assert (housing.material.young, rod.material.young) == (110e9, 210e9)
 
     @pytest.mark.slow

@@ -8,6 +8,7 @@ from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
 from templates.oil_film.cycle_heat_balance_v1 import CycleHeatBalance
 from templates.oil_film.oil_film_cycle_v1 import OilFilmCycle
+from templates.physics.heat.cycle_heat import _bracket
 from templates.physics.supplied.fed_cycle import gap_cubed
 
 FILM, ETA = "minimum_film_thickness", "effective_viscosity"
@@ -87,6 +88,32 @@ class TestBalance:
             wanted = np.trapezoid((1 - x * np.cos(at) - y * np.sin(at)) ** 3, at)
             found = gap_cubed(*(np.array([v]) for v in (x, y, start, extent)))
             assert found[0] == pytest.approx(wanted, rel=1e-7)
+
+
+class TestSearch:
+    @pytest.mark.parametrize(
+        ("root", "least", "most"),
+        [(-0.3, -0.9, np.inf), (-0.3, -0.31, np.inf), (-2.0, -2.05, -1.0), (-0.5, -np.inf, -0.2)],
+    )
+    def test_limit_an_orbit_may_exist_only_near_the_root(self, root, least, most):
+        """Below `least` the load is too heavy for an orbit, above `most` too light [ln(viscosity)]."""
+        top, load = np.zeros(1), np.exp(np.array([root]))
+
+        def lack(x):
+            return np.where((x < least) | (x > most), np.nan, root - x)
+
+        (low,), (high,) = _bracket(lack, top, load)
+        assert low <= root <= high
+        assert np.isfinite(lack(np.array([low, high]))).all()
+
+    def test_limit_without_a_root_there_is_no_bracket(self):
+        low, high = _bracket(lambda x: np.where(x < -1, np.nan, -1.5 - x), np.zeros(1), np.ones(1))
+        assert np.isnan(low).all()
+        assert np.isnan(high).all()
+
+    def test_limit_the_supply_viscosity_may_be_too_low_already(self):
+        low, high = _bracket(lambda x: 0 * x, np.full(1, 0.3), np.ones(1))
+        assert low == high == 0.3
 
 
 class TestLimits:

@@ -10,7 +10,7 @@ from patience import patient, until
 from playwright.sync_api import expect
 from serving import API
 
-from cad.export import MEDIA_TYPES
+from cad.file_kinds import BY_PART, MEDIA_TYPES
 
 PATIENCE = patient(60.0) * 1000  # ms
 SHELL = {"id": "plain_bearing", "version": 1, "parameters": {**BUSH, "inner_diameter": "37.5 mm"}}
@@ -50,6 +50,24 @@ def test_the_step_file_is_the_first_of_the_downloads(http):
     offered = re.findall(r"data-download>([^<]+)</a>", links)
     assert offered[:2] == ["STEP", "STEP with checks"]
     assert len(offered) == len({*offered}) == len(MEDIA_TYPES) - 1  # all kinds but the picture
+
+
+def test_the_parts_of_an_assembly_have_files_of_their_own(http):
+    """The page offers the kinds that can hold one part, for each part; a single part has no such list."""
+    assert "Files of single parts" not in http.get(f"/designs/{design(http, 'one')}").text
+    pair = {"id": "plain_bearing", "version": 1, "parameters": {"inner_diameter": "37.5 mm"}}
+    body = {"name": "pair", "models": {"shell": pair}}
+    made = http.post(f"{API}/designs", json=body, headers={"Prefer": "wait=60", "Accept": "*/*"}).json()
+    page = http.get(f"/designs/{made['id']}").text
+    links = re.findall(r'href="([^"]+[?]part=[^"]+)"', page)
+    asked = [re.search(r"model\.(.+)[?]part=(.+)", one).groups() for one in links]
+    parts = list(dict.fromkeys(part for _, part in asked))
+    assert parts == ["lower_back", "lower_lining", "upper_back", "upper_lining"]
+    assert asked == [(kind, part) for part in parts for kind in BY_PART]
+    (stl,) = [one for one in links if one.endswith(f"model.stl?part={parts[0]}")]
+    answer = http.get(stl, headers={"Prefer": "wait=60"})
+    assert answer.status_code == 200, answer.text
+    assert f"_{parts[0]}.stl" in answer.headers["content-disposition"]
 
 
 @pytest.mark.slow

@@ -10,19 +10,19 @@
 # ---
 
 # %% [markdown]
-# # From worksheet to STEP
+# # A part: from worksheet to STEP
 #
-# A bearing is sized by its oil film, drawn by a CAD model, written as STEP and measured on that file, all
-# in Python and without the service. The [tutorial](../tutorial.md) does the same through the service,
-# which adds revisions, relations and reports.
+# The oil film sizes a bearing, a CAD model builds it, and a STEP file holds it; the file is then measured.
+# All of this happens in Python. The [tutorial](../tutorial.md) does the same through the service, which adds
+# revisions, relations and reports.
 
 # %%
+import io
 import tempfile
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
-from IPython.display import Image
 
 from cad.catalogue import models
 from cad.export import derive
@@ -101,8 +101,10 @@ assert abs(build.dimensions["inner_diameter"] - film.bearing_diameter.to("mm").m
 assert abs(build.dimensions["width"] - width) < 1e-6
 
 # %%
-Image(derive(build.step, "png"))
-
+picture = plt.imread(io.BytesIO(derive(build.step, "png")))
+figure, axes = plt.subplots(figsize=(6.4, 4.8))
+axes.imshow(picture)
+axes.axis("off")
 # %% [markdown]
 # Equal parameters give equal bytes, so the file can be checked by its hash.
 

@@ -10,7 +10,7 @@
 # ---
 
 # %% [markdown]
-# # One film through all levels
+# # A bearing: one film at all levels
 #
 # `oil_film` 2 computes the same bearing at five levels of fidelity. This notebook computes one case at
 # each of them, measures what each costs, and draws the trade of speed for accuracy. MkDocs executes it
