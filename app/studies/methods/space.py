@@ -22,7 +22,7 @@ class Interval:
     Raises
     ------
     InvalidInputs
-        With code `bounds`, if the bounds are not finite or not in order, or if log spacing has a bound ≤ 0.
+        If the bounds are not finite or not in order, or if log spacing has a bound ≤ 0; the code is `bounds`.
     """
 
     name: str
@@ -66,7 +66,7 @@ class Values:
     Raises
     ------
     InvalidInputs
-        With code `values`, if the list is empty or a value is not finite.
+        If the list is empty or a value is not finite; the code is `values`.
     """
 
     name: str
