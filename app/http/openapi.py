@@ -6,7 +6,7 @@ header cannot be null; a change needs If-Match; a name that does not fit the pat
 The problems that follow from an operation's parameters and body are added here too; a route declares only its
 other problems.
 
-FastAPI's dictionaries hold parts of a description of any depth, so their type is `Any`.
+FastAPI's dictionaries are nested to any depth, so their values have the type `Any`.
 """
 
 from __future__ import annotations

@@ -78,7 +78,7 @@ def read(raw: Any, declared: str) -> TypedQuantity:
     Raises
     ------
     FaultyText
-        With a code and a remedy.
+        If the value is not a valid quantity; the error states a code and a remedy.
     """
     match raw:
         case str():
@@ -104,7 +104,7 @@ def read_beside(raw: Any, declared: str) -> TypedQuantity:
     Raises
     ------
     FaultyText
-        With a code and a remedy.
+        If the value is not a valid quantity; the error states a code and a remedy.
     """
     if not unit(declared).difference:
         return read(raw, declared)
@@ -122,6 +122,11 @@ def _beside(raw: Any) -> Any:
 
 def _as_difference(match: re.Match[str]) -> str:
     return difference_of(match[0])
+
+
+def in_points(text: str) -> str:
+    """Return a text with decimal points in place of decimal commas, unless a comma may group thousands."""
+    return text if _GROUPED.search(text) and not _ENGLISH.search(text) else _with_points(text)
 
 
 def scaled(typed: TypedQuantity, factor: float) -> TypedQuantity:
@@ -146,7 +151,7 @@ def read_any(raw: Any) -> TypedQuantity:
     Raises
     ------
     FaultyText
-        With a code and a remedy.
+        If the value is not a valid quantity; the error states a code and a remedy.
     """
     return read(raw, unit(_own_unit(raw)).text)
 
@@ -186,7 +191,7 @@ def _refuse_decimal_comma(text: str, declared: str) -> None:
     Raises
     ------
     FaultyText
-        With the same text in decimal points.
+        If the text has decimal commas; the error shows it with decimal points.
     """
     if (plain := _with_points(text)) == text or not _parted(plain):
         return
