@@ -35,7 +35,8 @@ from benchmarks.film_cycle_duties import (
     values,
 )
 from benchmarks.supplied_duties import RandomDuty, random_duty
-from templates.physics.supplied.fed_cycle import UNREPEATED, fed_film, fed_orbit
+from templates.physics.orbits.cyclic_film import weights
+from templates.physics.supplied.fed_cycle import UNREPEATED, FedOrbit, fed_film, fed_orbit
 from templates.physics.supplied.supplied_orbit import (
     COARSE,
     FINE,
@@ -55,8 +56,8 @@ from templates.physics.supplied.supply_geometry import HALF
 KEPT = Path("benchmarks/results/film_cycle_engines.jsonl")
 SUPPLIES = ("half_groove", "full_groove", "pin_hole", "sleeve_hole", "slot", "part_groove", "several")
 FINER = 1.5
-FITTED, TRIED, JUDGED = (101, 202), 303, 404
-"""Seeds from which the bounds are derived; a seed that may withdraw bounds; a seed that only judges them."""
+FITTED, TRIED, JUDGED = (101, 202), 303, (404, 505)
+"""Seeds from which the bounds are derived; a seed that may withdraw bounds; seeds that only judge them."""
 LOWEST, HIGHEST = 0.02, 4.0
 """Relative supply pressures [-]."""
 Line = dict[str, Any]
@@ -103,12 +104,20 @@ def compared(seed: int, number: int, *, finer: bool) -> Line:
     own = [marched.least_gap, film.P_max, film.loss, film.side_flow, marched.mean_feed]
     line["own"] = [digits(value) for value in own]
     line["change"] = [digits(value) for value in astuple(marched.change)]
+    line["rate"] = digits(mean_rate(duty, orbit))
     truth = values(orbit, film)
     keep(line, truth)
     line["errors"] = errors_of(duty, truth)
     if finer:
         line["finer"] = finer_march(duty, marched)
     return line
+
+
+def mean_rate(duty: RandomDuty, orbit: FedOrbit) -> float:
+    """Return the mean shear rate over Omega/psi: sliding over gap, around the bearing and the cycle [-]."""
+    load, gap = duty.load, orbit.gap
+    mean = weights(load.angle, load.period) / load.period
+    return float((np.abs(duty.sliding) / np.sqrt(gap * (2 - gap))) @ mean)
 
 
 def finer_march(duty: RandomDuty, marched: SuppliedOrbit) -> list[float | None] | None:

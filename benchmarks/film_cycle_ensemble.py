@@ -31,8 +31,8 @@ and B/D gets its own factor: the smallest with which the bound is right for 95 %
 high supply pressure. The factor is larger in a case that needs it for 95 % of its own duties, and where all
 engines together need it for 97 % (`Widening`). A bound that is then right for fewer than 95 of 100 of these
 duties and of the engines of seed 303, in a case or in a band, is replaced by null (`settled`), and so is a
-band with fewer than 59 duties. The engines of seed 404 are used for no choice: `page` prints for how many of
-them the bounds are right.
+band with fewer than 59 duties. The engines of seeds 404 and 505 are used for no choice: `page` prints for how
+many of them the bounds are right.
 
 Errors are relative to level `supplied`; the change of its orbit from cycle to cycle is added. A duty that
 starves has an infinite error. Pressures have no bound, because the pressure of level supplied does not
@@ -239,7 +239,7 @@ def fresh_engines() -> list[Line]:
 
 def judged_engines() -> list[Line]:
     """Return the engines that change nothing."""
-    return [line for line in engines.kept() if line["seed"] == engines.JUDGED]
+    return [line for line in engines.kept() if line["seed"] in engines.JUDGED]
 
 
 def error_of(line: Line, level: str, output: str) -> float:
@@ -249,7 +249,7 @@ def error_of(line: Line, level: str, output: str) -> float:
     return np.inf if own is None else own + (line["repeat"] or 0.0)
 
 
-def powers_of(places: Array, errors: Array) -> dict[str, float]:
+def powers_of(places: Array, errors: Array, names: tuple[str, ...] = ATTRIBUTES) -> dict[str, float]:
     """Return exponents of the attributes that follow the large errors: linear quantile regression.
 
     Parameters
@@ -258,6 +258,8 @@ def powers_of(places: Array, errors: Array) -> dict[str, float]:
         (N, k) logarithms of the attributes.
     errors
         (N,) above 0.
+    names
+        The k attributes.
 
     References
     ----------
@@ -277,7 +279,7 @@ def powers_of(places: Array, errors: Array) -> dict[str, float]:
 
     start = np.concatenate([[np.quantile(y, FOLLOWED)], np.zeros(z.shape[1])])
     found = minimize(loss, start, jac=True, method="L-BFGS-B").x[1:]
-    return {name: round(float(v), 2) for name, v in zip(ATTRIBUTES, found / width, strict=True)}
+    return {name: round(float(v), 2) for name, v in zip(names, found / width, strict=True)}
 
 
 def law_of(lines: list[Line], level: str, output: str) -> Law:
@@ -292,10 +294,10 @@ def law_of(lines: list[Line], level: str, output: str) -> Law:
     return Law(cells(lambda i, j: factor), powers, ranges(places))
 
 
-def ranges(places: Array) -> dict[str, tuple[float, float]]:
+def ranges(places: Array, names: tuple[str, ...] = ATTRIBUTES) -> dict[str, tuple[float, float]]:
     """Return the range of each attribute, rounded outwards to four digits."""
     low, high = np.exp(places.min(axis=0)) * (1 - 1e-3), np.exp(places.max(axis=0)) * (1 + 1e-3)
-    every = zip(ATTRIBUTES, low, high, strict=True)
+    every = zip(names, low, high, strict=True)
     return {name: (float(f"{a:.4g}"), float(f"{b:.4g}")) for name, a, b in every}
 
 
@@ -643,11 +645,11 @@ def page() -> None:
         own = [line for line in first if case_of(line) == case]
         for level, outputs in levels.items():
             print("| " + " | ".join(map(str, row(case, level, own, outputs, found.tried, found.held))) + " |")
-    summaries([(found.stated, judged)], f"engines of seed {engines.JUDGED}")
+    summaries([(found.stated, judged)], f"engines of seeds {engines.JUDGED}")
     summaries([(found.stated, fresh)], f"engines of seed {engines.TRIED}")
     summaries(found.tried[:-1], "others, by the bounds of four fifths")
     by_band(found.tried, "other duties")
-    by_band([(found.stated, judged)], f"engines of seed {engines.JUDGED}")
+    by_band([(found.stated, judged)], f"engines of seeds {engines.JUDGED}")
 
 
 def at_start(tried: list[Trial]) -> list[tuple[Line, float]]:

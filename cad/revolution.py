@@ -51,7 +51,12 @@ def drill(radius: float, reach: float, z: float = 0.0) -> Solid:
 
 
 def drilled_volume(
-    hole: float, outside: float, inside: float, groove: float = 0.0, half_groove: float = 0.0
+    hole: float,
+    outside: float,
+    inside: float,
+    groove: float = 0.0,
+    half_groove: float = 0.0,
+    offset: float = 0.0,
 ) -> float:
     """Return the volume that a radial hole removes from a cylindrical wall [mm³], from its chords.
 
@@ -64,6 +69,9 @@ def drilled_volume(
         Radii [mm] of the hole, of the wall and of the groove's bottom.
     half_groove
         Half the width of the groove [mm], which is centred on the hole; 0 for no groove.
+    offset
+        By how much the axis of an eccentric bore is below that of the wall [mm]; `inside` then is the bore at
+        the crown.
     """
     if hole == 0:
         return 0.0
@@ -71,7 +79,8 @@ def drilled_volume(
     def slice_at(t: float) -> float:
         x, z = hole * sin(t), hole * cos(t)
         in_groove = min(z, half_groove)
-        far, deep, near = (sqrt(R * R - x * x) for R in (outside, max(groove, inside), inside))
+        near = sqrt((inside + offset) ** 2 - x * x) - offset
+        far, deep = sqrt(outside**2 - x * x), sqrt(groove**2 - x * x) if groove > inside else near
         return 2 * z * (z * far - in_groove * deep - (z - in_groove) * near)
 
     kink = acos(min(half_groove / hole, 1.0))

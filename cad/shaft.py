@@ -75,7 +75,7 @@ class BorePlace:
     """A split bore [mm] about z with its middle at z = 0, and the face that holds its solid.
 
     The held face is the plane y = `held_at` or, if `held_radius` is given, the cylinder along z about (0,
-    `held_at`).
+    `held_at`). The first `solids` of the file surround the bore, all of them if it is 0; bolts come last.
     """
 
     radius: float
@@ -83,3 +83,4 @@ class BorePlace:
     held_at: float
     held_radius: float | None
     material: Material
+    solids: int = 0

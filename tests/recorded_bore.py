@@ -1,4 +1,6 @@
-"""Recorded compliance of the example `bearing_housing` 1 by finite elements at level `default`.
+"""Recorded compliance of a `bearing_housing` 1 by finite elements at level `default`.
+
+It is the example without shoulders, bulkhead, bolts and dowels: two boxes.
 
 It stands in for the solver in quick tests. The lower half of the symmetric matrix, row by row [um/GPa].
 """

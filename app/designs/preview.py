@@ -9,7 +9,7 @@ from app.calculations.json_values import rendered
 from app.calculations.schemas.evaluations import Output
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository, results, tolerances
-from app.designs.document import Document, merge
+from app.designs.document import Document, StoredDocument, merge
 from app.designs.engine.calculate import calculate
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import judged
@@ -104,7 +104,7 @@ def _steps_of(document: Document) -> list[tuple[str, int]]:
 
 
 def _variants(
-    database: Database, catalogues: Catalogues, document: Document, base: Calculation, saved: JsonObject
+    database: Database, catalogues: Catalogues, document: Document, base: Calculation, saved: StoredDocument
 ) -> list[Outcome]:
     """Return the calculated variants of a document.
 

@@ -13,7 +13,7 @@ from app.calculations.cache import Cache
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository, results, tolerances, views
 from app.designs.automap import proposals
-from app.designs.document import Document, merge
+from app.designs.document import Document, StoredDocument, merge
 from app.designs.drives import network
 from app.designs.engine.calculate import calculate
 from app.designs.engine.calculation import Calculation
@@ -160,7 +160,7 @@ class Designs:
         note: str | None,
         once: Once,
         action: str = "design.create",
-        saved: JsonObject | None = None,
+        saved: StoredDocument | None = None,
     ) -> SaveResult:
         """Create a design, perhaps from a `saved` document, and return its first revision.
 
@@ -286,7 +286,7 @@ class Designs:
         note: str | None,
         once: Once,
         action: str,
-        saved: JsonObject,
+        saved: StoredDocument,
     ) -> SaveResult:
         """Return the revision after `base` with another document, or `base` if the document is unchanged."""
         draft = self.draft(raw, note, action, saved)
@@ -337,7 +337,7 @@ class Designs:
             return None
 
     def draft(
-        self, raw: Mapping[str, Raw], note: str | None, action: str, saved: JsonObject | None = None
+        self, raw: Mapping[str, Raw], note: str | None, action: str, saved: StoredDocument | None = None
     ) -> Draft:
         """Return the revision to save for a document; a job adds its results if a value is pending.
 
@@ -364,7 +364,7 @@ class Designs:
         written = StoredRevision(plain, stored, results.models(calculation, outcomes), state, note, action)
         return Draft(written, _kind(calculation.graph, is_deferred), is_deferred, begun_steps())
 
-    def _variants(self, document: Document, base: Calculation, saved: JsonObject | None) -> list[Outcome]:
+    def _variants(self, document: Document, base: Calculation, saved: StoredDocument | None) -> list[Outcome]:
         """Return the variants of a document, as far as they can be calculated now.
 
         Raises
@@ -377,13 +377,13 @@ class Designs:
         return outcomes
 
     def _checked(
-        self, document: Document, base: Calculation, saved: JsonObject | None
+        self, document: Document, base: Calculation, saved: StoredDocument | None
     ) -> tuple[list[Outcome], list[Fault]]:
         if not document.variants:
             return [], []
         return checked(document, base, Available(self.catalogues, *self._solids), saved)
 
-    def faulty_variants(self, raw: Mapping[str, Raw], saved: JsonObject) -> list[Fault]:
+    def faulty_variants(self, raw: Mapping[str, Raw], saved: StoredDocument) -> list[Fault]:
         """Return all faults of a document's variants that would prevent a save.
 
         Raises

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Protocol
 
+from app.designs.document import StoredDocument
 from app.designs.engine.calculation import Calculation
 from app.plain import Json, JsonObject
 from app.schemas.answers import Warning
@@ -40,7 +41,7 @@ class Recorded(Protocol):
         """Return its parameters as quantities."""
 
 
-def warnings(document: JsonObject) -> list[Warning]:
+def warnings(document: StoredDocument) -> list[Warning]:
     """Return a warning for every parameter in a design's document that has `plus` or `minus`."""
     listed = list(map(_warning, unused(document["parameters"])))
     for name, model in document["models"].items():
@@ -67,7 +68,7 @@ def stated(row: RevisionModelRow, build: Recorded, typed: JsonObject | None = No
 
 
 def not_stated_in(
-    calculation: Calculation, saved: JsonObject | None = None, variant: str = ""
+    calculation: Calculation, saved: StoredDocument | None = None, variant: str = ""
 ) -> Iterator[Fault]:
     """Yield a fault for each tolerance of a model's parameter, typed there, that no file would state.
 
@@ -82,7 +83,7 @@ def not_stated_in(
             yield from (fault.within(block.name) for fault in not_stated(block.cls, given))
 
 
-def _typed_in(document: JsonObject, variant: str) -> dict[str, Json]:
+def _typed_in(document: StoredDocument, variant: str) -> dict[str, Json]:
     """Return the parameters of models that a document sets, by their names in it."""
     own = {
         f"{model}.{name}": raw

@@ -27,6 +27,12 @@ GIVEN: JsonDict = {
 Given = Annotated[object, WithJsonSchema(GIVEN)]
 """A value as typed; the domain reads it and reports faults."""
 
+Between = Annotated[
+    list[Given],
+    Field(min_length=2, max_length=2, description="an interval: the lowest and the highest value to try"),
+]
+"""An interval of an input, as every search takes it."""
+
 Limits = Annotated[
     dict[str, Given],
     Field(

@@ -10,6 +10,7 @@ class Refinement(TypedDict):
     """One step of the mesh refinement until a stress converges."""
 
     elements: int
+    order: int
     value: float  # MPa under 1 N·m
 
 

@@ -7,6 +7,7 @@ such record: it stated each tolerance of its parameters at faces.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from typing import TypedDict
 
 from app.plain import JsonObject
 from app.solids.schemas.models import PartFace, StatedTolerance
@@ -24,7 +25,19 @@ UNRECORDED = StatedTolerance(
 _MOST_NUMBERS = 6
 
 
-def recorded(places: Mapping[str, TolerancePlace]) -> JsonObject:
+Quantities = Mapping[str, Mapping[str, object]]
+"""Parameters as a build or a revision stores them."""
+
+
+class Record(TypedDict):
+    """The record of one tolerance: part and number (from 0) of each face, and its place on the drawing."""
+
+    faces: list[list[str | int]]
+    drawn: str
+    reason: str
+
+
+def recorded(places: Mapping[str, TolerancePlace]) -> dict[str, Record]:
     """Return the record of a build."""
     return {
         name: {"faces": [[*face] for face in place.faces], "drawn": place.drawn, "reason": place.reason}
@@ -32,7 +45,7 @@ def recorded(places: Mapping[str, TolerancePlace]) -> JsonObject:
     }
 
 
-def of_build(measurements: JsonObject, parameters: JsonObject) -> dict[str, StatedTolerance]:
+def of_build(measurements: JsonObject, parameters: Quantities) -> dict[str, StatedTolerance]:
     """Return where the files of a build state its tolerances, by parameter."""
     if MEMBER in measurements:
         return {name: _stated(**record) for name, record in measurements[MEMBER].items()}
@@ -40,7 +53,7 @@ def of_build(measurements: JsonObject, parameters: JsonObject) -> dict[str, Stat
 
 
 def of_model(
-    measurements: JsonObject, built: JsonObject, parameters: JsonObject, typed: Iterable[str]
+    measurements: JsonObject, built: Quantities, parameters: Quantities, typed: Iterable[str]
 ) -> dict[str, StatedTolerance]:
     """Return where the tolerances of a model in a revision are stated, among them those that are nowhere.
 
@@ -51,7 +64,7 @@ def of_model(
     return {name: stated.get(name, NOWHERE) for name in every}
 
 
-def _toleranced(parameters: JsonObject) -> list[str]:
+def _toleranced(parameters: Quantities) -> list[str]:
     return [name for name, value in parameters.items() if value.get("upper") is not None]
 
 

@@ -157,20 +157,21 @@ def _stress(solid: Solid, shaft: Shaft, request: AnalysisRequest, report: Report
         "unit": "MPa",
         "error": peaks.error,
         "convergence": [
-            {"elements": peak.elements, "value": _per_newton_metre(peak.value)} for peak in peaks.steps
+            {"elements": peak.elements, "order": peak.order, "value": _per_newton_metre(peak.value)}
+            for peak in peaks.steps
         ],
         "point": {"value": list(last.point), "unit": "mm"},
         "searched": {"value": list(searched(solid)), "unit": "mm"},
         "level": None,
-        "mesh": _mesh(solid, last.elements, last.degrees_of_freedom, 3),
+        "mesh": _mesh(solid, last.elements, last.degrees_of_freedom, last.order),
         "seconds": time.perf_counter() - started,
     }
     if peaks.converged:
         return {"value": _per_newton_metre(last.value), **common}
-    changes = " and ".join(f"{change:.1%}" for change in peaks.changes[-2:])
     reason = (
-        f"the greatest stress did not settle: the last refinements changed it by {changes}, not by less than "
-        f"{SMALL:.0%} and {CONVERGED:.0%}; at a sharp inner corner it has no limit, give it a fillet"
+        f"the greatest stress did not settle: the last refinement changed it by {peaks.change_by_mesh:.1%} "
+        f"({SMALL:.0%} is permitted), elements of third order by {peaks.change:.1%} ({CONVERGED:.0%}); "
+        "at a sharp inner corner it has no limit, give it a fillet"
     )
     return {"value": None, **common, "reason": reason}
 

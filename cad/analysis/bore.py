@@ -36,7 +36,7 @@ from netgen.occ import HalfSpace, OCCGeometry, Pnt, Vec
 
 from cad.analysis.elastic import stress
 from cad.analysis.kinds import HARMONICS, mode_names
-from cad.analysis.mesh import MOST_ELEMENTS, ONE_THREAD, curve
+from cad.analysis.mesh import ONE_THREAD, curve, meshed
 from cad.analysis.solid import FREE, HELD, MIRROR
 from cad.errors import AnalysisError
 from cad.shaft import BorePlace
@@ -70,7 +70,7 @@ class BoredSolid:
 
 
 def read_bored(step: bytes, place: BorePlace) -> BoredSolid:
-    """Read the solids of a STEP file, join them, and keep one half.
+    """Read the solids about the bore of a STEP file, join them, and keep one half.
 
     Raises
     ------
@@ -80,7 +80,7 @@ def read_bored(step: bytes, place: BorePlace) -> BoredSolid:
     with TemporaryDirectory() as folder:
         path = Path(folder, "model.step")
         path.write_bytes(step)
-        solids = list(OCCGeometry(str(path)).shape.solids)
+        solids = list(OCCGeometry(str(path)).shape.solids)[: place.solids or None]
     whole = solids[0]
     for other in solids[1:]:
         whole = whole + other
@@ -151,17 +151,9 @@ def bore_mesh(solid: BoredSolid, fineness: BoreFineness) -> Any:
     for face in solid.shape.faces:
         if face.name == BORE:
             face.maxh = fineness.bore * radius
-    parameters = MeshingParameters(
-        maxh=fineness.body * radius, grading=_GRADING, curvaturesafety=1.0, **ONE_THREAD
-    )
-    try:
-        mesh = ng.Mesh(OCCGeometry(solid.shape).GenerateMesh(parameters))
-    except Exception as error:  # Netgen raises no more specific exception
-        raise AnalysisError("mesh", f"Netgen could not mesh the solid: {error}") from error
-    if mesh.ne > MOST_ELEMENTS:
-        detail = f"the mesh would have {mesh.ne} elements, more than {MOST_ELEMENTS}: ask for another level"
-        raise AnalysisError("mesh", detail)
-    return mesh
+    largest = fineness.body * radius
+    parameters = MeshingParameters(maxh=largest, grading=_GRADING, curvaturesafety=1.0, **ONE_THREAD)
+    return meshed(solid.shape, parameters, largest)
 
 
 def mode_functions(place: BorePlace) -> list[Any]:

@@ -24,6 +24,7 @@ from netgen.meshing import MeshingParameters
 from netgen.occ import OCCGeometry
 
 from cad.analysis.corners import Edges, along, sharp_inner_edges
+from cad.analysis.element_count import estimated_elements
 from cad.analysis.solid import FREE, Solid, planar
 from cad.errors import AnalysisError
 
@@ -77,23 +78,40 @@ def make_grid(
         `mesh` if Netgen fails, or the mesh is too large for a job.
     """
     edges = sharp_edges(solid, fineness) if edges is None else edges
+    parameters = sizes(solid, fineness, near, edges)
+    return Grid(meshed(solid.shape, parameters, fineness.size * solid.scale), solid, len(edges.ends) > 0)
+
+
+def sizes(solid: Solid, fineness: Fineness, near: Iterable[Near], edges: Edges) -> MeshingParameters:
+    """Return the prescribed sizes of elements: at large, by curvature, near places and along sharp edges."""
     parameters = MeshingParameters(
         maxh=fineness.size * solid.scale, grading=_GRADING, curvaturesafety=fineness.curvature, **ONE_THREAD
     )
     for place in near:
         for point in _ball(place):
             parameters.RestrictH(*point, place.size)
+    for point, size in along(edges, fineness.sharp):
+        parameters.RestrictH(*point, size)
+    return parameters
+
+
+def meshed(shape: Any, parameters: MeshingParameters, largest: float) -> Any:
+    """Mesh a shape with straight elements, none larger than `largest` [mm], unless they would be too many.
+
+    Raises
+    ------
+    AnalysisError
+        `mesh` if Netgen fails, or the mesh would be too large for a job.
+    """
     with _meshing():
-        for point, size in along(edges, fineness.sharp):
-            parameters.RestrictH(*point, size)
-        mesh = ng.Mesh(OCCGeometry(solid.shape).GenerateMesh(parameters))
-    if mesh.ne > MOST_ELEMENTS:
-        detail = (
-            f"the mesh would have {mesh.ne} elements, more than {MOST_ELEMENTS}: ask for less "
-            "accuracy, or draw what is smallest (a fillet, a drilling) larger or not at all"
-        )
-        raise AnalysisError("mesh", detail)
-    return Grid(mesh, solid, len(edges.ends) > 0)
+        elements = estimated_elements(shape, parameters, largest, MOST_ELEMENTS)
+        if elements <= MOST_ELEMENTS:
+            return ng.Mesh(OCCGeometry(shape).GenerateMesh(parameters))
+    detail = (
+        f"the mesh would have more than {MOST_ELEMENTS} elements: ask for less accuracy, or draw what is "
+        "smallest (a fillet, a drilling) larger or not at all"
+    )
+    raise AnalysisError("mesh", detail)
 
 
 def sharp_edges(solid: Solid, fineness: Fineness) -> Edges:

@@ -9,12 +9,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import atan2, degrees, hypot, pi, radians, remainder
+from math import atan2, degrees, hypot, pi, remainder
 
 from cadquery import Vector
 
+from cad.cranks.planes_across import PlanesAcross, within
 from cad.cranks.throw_readback import Webs, stubs
-from cad.surfaces import PartSurfaces, Place, Size, Surface, Z, alike, faces_of
+from cad.surfaces import Face, PartSurfaces, Place, Size, Surface, Z, alike, faces_of
 
 _CLEAR = 1e-6  # [mm], also used as the sine of an angle
 _ANGLE = 1e-8  # [rad]
@@ -49,13 +50,15 @@ class ThrowReadback:
 
 @dataclass(frozen=True)
 class ShaftReadback:
-    """The features of a shaft of many throws, read from its surfaces.
-
-    `split` tells whether its pins are split.
-    """
+    """The features of a shaft of many throws, read from its surfaces and their planes across it."""
 
     seen: PartSurfaces
-    split: bool = False
+    planes: PlanesAcross
+
+    @property
+    def split(self) -> bool:
+        """Return whether the pins are split."""
+        return self.planes.split
 
     @cached_property
     def beside(self) -> list[Surface]:
@@ -75,11 +78,9 @@ class ShaftReadback:
         LookupError
             If there is no throw, or if a throw has no pin.
         """
-        levels = self.seen.levels(Z)
-        first = 1 + any(_spans(c, levels[0], levels[1]) for c in self.seen.about(Z))
+        levels, count = self.planes.levels, self.planes.of_throw
         found = []
-        count = 6 if self.split else 4
-        for place in range(first, len(levels) - count, count):
+        for place in range(self.planes.first, len(levels) - count, count):
             faces = tuple(levels[place : place + count])
             pins = (self._pin_between(*faces[at : at + 2]) for at in range(1, count - 1, 2))
             found.append(ThrowReadback(tuple(pins), faces))
@@ -95,13 +96,51 @@ class ShaftReadback:
 
     def _beside_within(self, low: float, high: float) -> list[Surface]:
         """Return the cylinders parallel to the shaft but not coaxial with it, within a range of z."""
-        return [c for c in self.beside if low - _CLEAR < c.reach[0] and c.reach[1] < high + _CLEAR]
+        return within(self.beside, low, high)
 
     @property
     def ends(self) -> tuple[list[Surface], list[Surface]]:
         """Return the coaxial cylinders before the first web and after the last, starting at the web."""
         first, last = self.throws[0].faces, self.throws[-1].faces
-        return stubs(self.seen, Webs((first[0], first[1], last[-2], last[-1])))
+        front, rear = stubs(self.seen, Webs((first[0], first[1], last[-2], last[-1])))
+        rings = self._rings
+        return [c for c in front if c.face not in rings], [c for c in rear if c.face not in rings]
+
+    @cached_property
+    def _rings(self) -> set[Face]:
+        """Return the faces of the cylinders of collars."""
+        return {ring.face for *_, rings in self.planes.collars for ring in rings}
+
+    @property
+    def shoulders(self) -> tuple[float, float]:
+        """Return the positions at which the nose and the flange meet their journals.
+
+        The thinner of two cylinders with a fillet ends at the fillet, the other one at the shoulder.
+        """
+        (front, nose), (rear, flange) = (end[:2] for end in self.ends)
+        return -_meeting(front, nose), _meeting(rear, flange)
+
+    @cached_property
+    def end_fillets(self) -> tuple[list[Surface], list[Surface]]:
+        """Return the tori between the nose and its journal, and between the flange and its journal.
+
+        Raises
+        ------
+        LookupError
+            If a torus is missing.
+        """
+        (front, nose), (rear, flange) = (end[:2] for end in self.ends)
+        return self._between(front, nose, -1), self._between(rear, flange, 1)
+
+    def _between(self, journal: Surface, end: Surface, side: int) -> list[Surface]:
+        size = end.reach[0] - journal.reach[1]
+        if size < _CLEAR:
+            return []
+        z = side * (journal.reach[1] if end.diameter > journal.diameter else end.reach[0])
+        found = [t for t in self.seen.tori if abs(t.point.z - z) < _CLEAR > abs(t.diameter / 2 - size)]
+        if not found:
+            raise LookupError(f"the file has no fillet of {size:.9g} mm at an end of the shaft")
+        return found
 
     def common(self) -> dict[str, float]:
         """Return the dimensions that all throws share."""
@@ -112,7 +151,7 @@ class ShaftReadback:
             **self._journals(),
             "pin_diameter": Size.diameter(pins),
             "pin_length": Size.repeated((self._apart(*span) for t in throws for span in t.pin_spans), "pins"),
-            "throw": Size.distance(reach, self._journal_surfaces(), pins),
+            "throw": Size.distance(reach, self.journals(), pins),
             "pin_bore": self._diameter(self._pin_bores, "pin bores"),
             "web_thickness": Size.repeated((self._apart(*web) for t in throws for web in t.webs), "webs"),
             "web_width": self.web_width,
@@ -125,7 +164,7 @@ class ShaftReadback:
         """Return the distance between the planes at two positions along the shaft [mm]."""
         return self.seen.apart(Z, low, high)
 
-    def _journal_surfaces(self) -> list[Surface]:
+    def journals(self) -> list[Surface]:
         """Return the cylinders of the main journals, from front to rear.
 
         Raises
@@ -136,7 +175,8 @@ class ShaftReadback:
         front, rear = (end[0] for end in self.ends)
         inner = []
         for low, high in self._gaps():
-            if not (between := self._about(low, high)):
+            between = [c for c in within(self.seen.about(Z), low, high) if c.face not in self._rings]
+            if not between:
                 raise LookupError(
                     f"the file has no main journal between the webs at {low:.9g} and {high:.9g} mm"
                 )
@@ -149,19 +189,14 @@ class ShaftReadback:
         return [(before.faces[-1], behind.faces[0]) for before, behind in pairs]
 
     def _journals(self) -> dict[str, float]:
-        front, rear = (end[0] for end in self.ends)
         first, last = self.throws[0].faces[0], self.throws[-1].faces[-1]
-        spans = [(-front.reach[1], first), *self._gaps(), (last, rear.reach[1])]
+        front, rear = self.shoulders
+        spans = [(front, first), *self._gaps(), (last, rear)]
         return {
-            "journal_diameter": Size.diameter(self._journal_surfaces()),
+            "journal_diameter": Size.diameter(self.journals()),
             "journal_length": Size.repeated((self._apart(*span) for span in spans), "journals"),
             "journal_bore": self._diameter(self._journal_bores, "journal bores"),
         }
-
-    def _about(self, low: float, high: float) -> list[Surface]:
-        """Return the coaxial cylinders within a range of z."""
-        cylinders = self.seen.about(Z)
-        return [c for c in cylinders if low - _CLEAR < c.reach[0] and c.reach[1] < high + _CLEAR]
 
     def _diameter(self, bores: Callable[[ThrowReadback], list[list[Surface]]], what: str) -> float:
         """Return the common diameter of the bores of all throws; 0 if no throw has a bore.
@@ -196,7 +231,7 @@ class ShaftReadback:
     @property
     def web_width(self) -> float:
         """Return the web width: twice the distance from the axis to the sides of the webs."""
-        along = [p for p in self.seen.planes if abs(p.direction.dot(Z)) < _CLEAR]
+        along = [p for p in self.seen.planes if abs(p.direction.dot(Z)) < _CLEAR and self._is_behind_nose(p)]
         for normal, distance in self._sides_of_middle_webs() if self.split else ():
             sides = [plane for plane in along if _lies(plane, normal, distance)]
             if not sides:
@@ -209,6 +244,10 @@ class ShaftReadback:
         nearest = min(distances)
         sides = [plane for distance, plane in away if abs(distance - nearest) < _CLEAR]
         return _across(2 * nearest, sides)
+
+    def _is_behind_nose(self, plane: Surface) -> bool:
+        """Return whether the middle of a plane is behind the nose, which may have a keyway."""
+        return plane.middle is None or plane.middle.z > self.shoulders[0]
 
     def _sides_of_middle_webs(self) -> Iterator[tuple[Vector, float]]:
         """Yield the normal of each side of each middle web, and its distance from the axis."""
@@ -235,8 +274,9 @@ class ShaftReadback:
         return near + alike((remainder(turn - near, 360) for turn in turns), "split pins")
 
     def _fillet(self) -> float:
-        tori = self.seen.tori
-        each = 6 if self.split else 4
+        at_ends = {torus.face for tori in self.end_fillets for torus in tori}
+        tori = [torus for torus in self.seen.tori if torus.face not in at_ends]
+        each = self.planes.of_throw
         if tori and len(tori) != each * len(self.throws):
             raise LookupError(f"each throw must have {each} fillets; the whole crankshaft has {len(tori)}")
         return Size.radius(tori) if tori else 0.0
@@ -263,16 +303,6 @@ class ShaftReadback:
             raise LookupError(f"the crankshaft must have {len(near)} throws; the file has {len(seen)}")
         return [wanted + remainder(angle - wanted, 360) for angle, wanted in zip(seen, near, strict=True)]
 
-    def flange(self) -> dict[str, float]:
-        """Return the diameters and lengths of the nose and the flange."""
-        (stub, nose), (root, flange) = (end[:2] for end in self.ends)
-        return {
-            "nose_length": self.seen.apart(Z, -nose.reach[1], -stub.reach[1]),
-            "nose_diameter": Size.diameter([nose]),
-            "flange_thickness": self.seen.apart(Z, root.reach[1], flange.reach[1]),
-            "flange_diameter": Size.diameter([flange]),
-        }
-
     def counterweights(self) -> list[float]:
         """Return the radius of each web's counterweight [mm]; 0 for none."""
         return [max((c.diameter for c in rim), default=0.0) / 2 for rim in self._rims]
@@ -293,8 +323,8 @@ class ShaftReadback:
     def _rims(self) -> list[list[Surface]]:
         """Return the cylinders about the shaft that are wider than the web, for each web."""
         least = 1.01 * self.web_width
-        webs = (web for throw in self.throws for web in throw.webs)
-        return [[c for c in self._about(*web) if c.diameter > least] for web in webs]
+        about, webs = self.seen.about(Z), (web for throw in self.throws for web in throw.webs)
+        return [[c for c in within(about, *web) if c.diameter > least] for web in webs]
 
     def counterweight_angle(self, radii: Sequence[float], near: float) -> float:
         """Return the common angle of the counterweights [deg].
@@ -331,28 +361,6 @@ class ShaftReadback:
         """Return the acute angle between two lines [rad]."""
         return abs(remainder(angle, pi))
 
-    def bolts(self) -> dict[str, float]:
-        """Return number, diameter, pitch circle and depth of the flange holes; None without holes."""
-        end = self.seen.levels(Z)[-1]
-        behind = self.throws[-1].faces[-1] - _CLEAR
-        holes = [c for c in self.beside if c.reach[0] > behind and abs(c.reach[1] - end) < _CLEAR]
-        if not holes:
-            return {"bolt_hole_diameter": 0.0}
-        self._check_spacing([atan2(h.point.y, h.point.x) for h in holes])
-        bottom = alike((h.reach[0] for h in holes), "bottoms of bolt holes")
-        return {
-            "bolt_holes": float(len(holes)),
-            "bolt_hole_diameter": Size.diameter(holes),
-            "bolt_circle_diameter": Size.circle(holes, self._journal_surfaces()),
-            "bolt_hole_depth": self.seen.apart(Z, bottom, end),
-        }
-
-    @staticmethod
-    def _check_spacing(angles: Sequence[float]) -> None:
-        step = 2 * pi / len(angles)
-        if any(abs(remainder(angle, step)) > radians(1e-5) for angle in angles):
-            raise LookupError("the bolt holes are not evenly spaced on their circle")
-
 
 def _leans(normal: Vector) -> bool:
     """Return whether a normal is oblique: neither parallel nor perpendicular to the shaft."""
@@ -367,9 +375,9 @@ def _across(width: float, sides: Sequence[Surface]) -> Size:
     return Size.distance(width, ahead, behind)
 
 
-def _spans(cylinder: Surface, low: float, high: float) -> bool:
-    """Return whether a cylinder extends from one plane to another."""
-    return abs(cylinder.reach[0] - low) < _CLEAR and abs(cylinder.reach[1] - high) < _CLEAR
+def _meeting(journal: Surface, end: Surface) -> float:
+    """Return the position along their axis at which a journal and an end of the shaft meet."""
+    return end.reach[0] if end.diameter > journal.diameter else journal.reach[1]
 
 
 def _lies(plane: Surface, normal: Vector, distance: float) -> bool:

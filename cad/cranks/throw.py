@@ -24,10 +24,38 @@ _MIDDLE = 1 - sqrt(0.5)  # distance of the middle of a fillet's arc from either 
 
 @dataclass(frozen=True)
 class End:
-    """A plain cylinder beyond a main journal [mm]."""
+    """A cylinder beyond a main journal [mm]; a size of 0 omits the feature.
+
+    The fillet lies where the thinner of journal and end meets the other, the chamfer of 45° at the free end.
+    """
 
     radius: float
     length: float
+    fillet: float = 0.0
+    chamfer: float = 0.0
+
+    def runs(self, journal: float, low: float, top: float) -> list[Run]:
+        """Return the outline from a journal's side at `low` over its end at `top` to the end's axis."""
+        far, r, c = top + self.length, self.fillet, self.chamfer
+        shoulder: Run = ((journal, top), (self.radius, top))
+        if self.radius > journal:
+            root = tuple(reversed(fillet_run(journal, r, top, -1)))
+            meeting: list[Run] = [((journal, low), root[0]), root, (root[-1], shoulder[1])]
+            foot = shoulder[1]
+        else:
+            root = fillet_run(self.radius, r, top, 1)
+            meeting = [((journal, low), shoulder[0]), (shoulder[0], root[0]), root]
+            foot = root[-1]
+        rim = [foot, (self.radius, far - c), (self.radius - c, far), (0.0, far)]
+        return [*meeting, *pairwise(rim)]
+
+
+@dataclass(frozen=True)
+class Collar:
+    """A ring about a main journal on the outer face of a web, whose face takes axial thrust [mm]."""
+
+    radius: float
+    height: float  # along the shaft
 
 
 @dataclass(frozen=True)
@@ -121,17 +149,27 @@ class Throw:
             [((0, -z), (edge, -z)), lower, side, upper, ((edge, z), (0, z))], self.outline.throw, -1
         )
 
-    def journal_solid(self, end: End | None) -> Shape:
+    def journal_solid(self, end: End | None, collar: Collar | None = None) -> Shape:
         """Return the journal on +z with its adjoining parts."""
-        z, top, radius = self.outer, self.journal_end, self.journal
-        root = fillet_run(radius, self.fillet, z, 1)
+        top, radius = self.journal_end, self.journal
+        foot = self.journal_foot(collar)
         beyond = (
-            [(end.radius, top), (end.radius, top + end.length), (0.0, top + end.length)]
+            end.runs(radius, foot[-1][-1][1], top)
             if end
-            else [(0.0, top)]
+            else [(foot[-1][-1], (radius, top)), ((radius, top), (0.0, top))]
         )
-        corners = [root[-1], (radius, top), *beyond]
-        return turned([((0, z), root[0]), root, *pairwise(corners)], 0.0, 1)
+        return turned([*foot, *beyond], 0.0, 1)
+
+    def journal_foot(self, collar: Collar | None) -> list[Run]:
+        """Return the outline of the journal on +z from its axis to the end of its fillet on the journal."""
+        z = self.outer
+        if collar is None:
+            root = fillet_run(self.journal, self.fillet, z, 1)
+            return [((0, z), root[0]), root]
+        top = z + collar.height
+        root = fillet_run(self.journal, self.fillet, top, 1)
+        rim = (collar.radius, z), (collar.radius, top)
+        return [((0, z), rim[0]), rim, (rim[1], root[0]), root]
 
     def blind_bore(self) -> Solid:
         """Return the bore of a split pin: it runs from its end at -z through the web on +z, and beyond."""

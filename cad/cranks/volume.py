@@ -13,7 +13,9 @@ from math import cos, pi, sin, sqrt, tan
 
 from scipy.integrate import quad
 
-from cad.cranks.throw import End, Throw
+from cad.cranks.keyway import Keyway
+from cad.cranks.throw import Collar, End, Throw
+from cad.revolution import sheet_under_arc
 
 
 def volume(throw: Throw) -> float:
@@ -39,9 +41,27 @@ def journal(t: Throw) -> float:
     return pi * (t.journal**2 - t.journal_bore**2) * t.journal_length + fillet(t.journal, t.fillet)
 
 
-def end_volume(end: End, bore: float) -> float:
-    """Return the volume of a plain cylinder with a bore."""
-    return pi * (end.radius**2 - bore**2) * end.length
+def end_volume(end: End, bore: float, journal: float) -> float:
+    """Return the volume of an end with its fillet at a journal of this radius, minus chamfer and bore."""
+    whole = pi * (end.radius**2 - bore**2) * end.length
+    bevel = pi * end.chamfer**2 * (end.radius - end.chamfer / 3)  # a triangle, revolved (Pappus)
+    return whole + fillet(min(end.radius, journal), end.fillet) - bevel
+
+
+def collar_volume(collar: Collar, journal: float) -> float:
+    """Return the volume that a collar adds around a journal, whose fillet it shifts."""
+    return pi * (collar.radius**2 - journal**2) * collar.height
+
+
+def keyway_volume(keyway: Keyway, nose: End) -> float:
+    """Return the volume that a keyway removes from a nose; its chamfer has removed a part of it already."""
+    half, floor = keyway.width / 2, nose.radius - keyway.depth
+
+    def section(radius: float) -> float:
+        return sheet_under_arc(radius, half) - floor * keyway.width
+
+    bevel = quad(lambda s: section(nose.radius - nose.chamfer + s), 0.0, nose.chamfer, epsabs=0, epsrel=1e-12)
+    return bevel[0] + section(nose.radius) * (keyway.length - nose.chamfer)
 
 
 def fillet(radius: float, size: float) -> float:

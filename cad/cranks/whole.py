@@ -24,10 +24,20 @@ from math import cos, degrees, pi, remainder, sin
 from cadquery import Shape, Solid, Vector
 from cadquery.func import fuse
 
-from cad.cranks.outline import reach
+from cad.cranks.keyway import Keyway
+from cad.cranks.outline import Run, reach
 from cad.cranks.split_pins import SplitPins
-from cad.cranks.throw import End, Throw, bore, fillet_run, turned
-from cad.cranks.volume import drilling, end_volume, fillet, journal, pin, web
+from cad.cranks.throw import Collar, End, Throw, bore, turned
+from cad.cranks.volume import (
+    collar_volume,
+    drilling,
+    end_volume,
+    fillet,
+    journal,
+    keyway_volume,
+    pin,
+    web,
+)  # fmt: skip
 from cad.model import Box
 from cad.on_demand import constant
 
@@ -70,6 +80,9 @@ class WholeShaft:
     flange: End
     bolts: Bolts | None
     split: SplitPins | None = None
+    keyway: Keyway | None = None
+    collar: Collar | None = None
+    thrust_main: int = 0  # number of the main journal with collars from the nose, 1 for the first; 0 for none
 
     @property
     def like(self) -> Throw:
@@ -126,9 +139,21 @@ class WholeShaft:
         inner = (count - 1) * (journal(t) + fillet(t.journal, t.fillet))
         pins = count * (2 if self.split else 1)
         middle = count * self.split.volume(t.outline.throw) if self.split else 0.0
-        ends = end_volume(self.nose, t.journal_bore) + end_volume(self.flange, t.journal_bore)
+        ends = sum(end_volume(end, t.journal_bore, t.journal) for end in (self.nose, self.flange))
         holes = self.bolts.count * pi * self.bolts.radius**2 * self.bolts.depth if self.bolts else 0.0
-        return webs + pins * (pin(t) - drilling(t)) + inner + 2 * journal(t) + ends - holes + middle
+        ends -= holes + (keyway_volume(self.keyway, self.nose) if self.keyway else 0.0)
+        return webs + pins * (pin(t) - drilling(t)) + inner + 2 * journal(t) + ends + middle + self._collars()
+
+    def _collars(self) -> float:
+        """Return the volume of the collars: one on each web beside the chosen main."""
+        if self.collar is None:
+            return 0.0
+        beside = (self.thrust_main > 1) + (self.thrust_main <= len(self.throws))
+        return beside * collar_volume(self.collar, self.like.journal)
+
+    def collar_of(self, main: int) -> Collar | None:
+        """Return the collar at a main journal, numbered from 1."""
+        return self.collar if main == self.thrust_main else None
 
     def box(self) -> Box:
         """Return the bounding box of webs, counterweights, nose and flange."""
@@ -152,12 +177,13 @@ class WholeShaft:
     def _parts(self) -> Iterator[Shape]:
         """Yield the nose with the first journal, then each throw with the journal behind it."""
         first = self.throws[0].front
-        nose = first.journal_solid(self.nose).mirror("XY")
+        nose = first.journal_solid(self.nose, self.collar_of(1)).mirror("XY")
         front, _ = self.halves(0)
         yield placed(nose, front) if self.split else nose.translate(Vector(0, 0, front.middle))
         for number, throw in enumerate(self.throws):
             last = number + 1 == len(self.throws)
-            behind = throw.rear.journal_solid(self.flange) if last else _journal(throw.rear)
+            collar = self.collar_of(number + 2)
+            behind = throw.rear.journal_solid(self.flange, collar) if last else _journal(throw.rear, collar)
             front, rear = self.halves(number)
             yield placed(throw.front.web().mirror("XY"), front)
             yield placed(throw.front.pin_solid(), front)
@@ -193,6 +219,8 @@ class WholeShaft:
                 yield placed(through, front)
             if t.drilling > 0:
                 yield placed(t.drill(), front)
+        if self.keyway:
+            yield self.keyway.tool(self.nose.radius, self.low)
         if self.bolts:
             yield from self._holes(self.bolts)
 
@@ -217,13 +245,12 @@ def _tools_of_half(t: Throw) -> Iterator[Shape]:
         yield t.drill()
 
 
-def _journal(t: Throw) -> Shape:
+def _journal(t: Throw, collar: Collar | None) -> Shape:
     """Return the journal on +z of a throw, up to the next web.
 
     Its seam is away from the mouth of the drilling.
     """
-    low, high = t.outer, t.journal_end
-    edge = t.journal + t.fillet
-    root = fillet_run(t.journal, t.fillet, low, 1)
-    top = tuple(reversed(fillet_run(t.journal, t.fillet, high, -1)))
-    return turned([((0, low), (edge, low)), root, (root[-1], top[0]), top, ((edge, high), (0, high))], 0.0, 1)
+    foot = t.journal_foot(collar)
+    ends = t.outer + t.journal_end
+    top: list[Run] = [tuple((r, ends - z) for r, z in reversed(run)) for run in reversed(foot)]
+    return turned([*foot, (foot[-1][-1], top[0][0]), *top], 0.0, 1)

@@ -1,7 +1,7 @@
 """Broken-out sections (ISO 128-3): cut a view open down to the axis of a hole that no section shows.
 
-Of several equal holes, the one farthest to the right in the view is opened. The removed material is a box,
-whose sides are drawn as thin lines with zigzags (ISO 128-2, 01.1.19).
+Of several equal holes, the one farthest to the right in the view is opened, together with coaxial ones. The
+removed material is a box, whose sides are drawn as thin lines with zigzags (ISO 128-2, 01.1.19).
 """
 
 from __future__ import annotations
@@ -70,12 +70,19 @@ def breaks(shapes: Sequence[Shape], plane: Plane, shown: Sequence[float]) -> lis
     if not holes:
         return []
     box = _box(shapes, plane)
-    found = []
+    lines = list[list[tuple[Point, Point, Surface, float]]]()
     for group in holes.values():
         chosen = max(group, key=lambda one: (round(one[0][0] + one[1][0], 3), one[0][1] + one[1][1]))
         joined = [one for one in group if _are_in_line(one, chosen)]
-        corners = [point for low, high, *_ in joined for point in (low, high)]
-        found.append(_region(corners, chosen[2].diameter, chosen[3], shapes, plane, box))
+        if coaxial := next((line for line in lines if _are_in_line(line[0], chosen)), None):
+            coaxial += joined  # a hole with its counterbore, or narrower in the next part
+        else:
+            lines.append(joined)
+    found = []
+    for line in lines:
+        corners = [point for low, high, *_ in line for point in (low, high)]
+        widest = max(hole.diameter for *_, hole, _ in line)
+        found.append(_region(corners, widest, line[0][3], shapes, plane, box))
     return found[:_MOST]
 
 

@@ -103,10 +103,12 @@ def contents(
     parameters = declared.own(header.parameters if header else {})
     repeated = {name: spans_of(size, seen) for name, size in declared.sizes.items()}
     seen = {body.name: _standing(seen[body.name], body) for body in bodies}
+    upright = [body for body in bodies if _is_upright(body)]
+    own = {body.name: seen[body.name] for body in upright}
     shown = [
-        *lengths(declared.sizes.values(), seen, section),
-        *measures(bodies, seen, section, end),
-        *standing([*seen.values()], section, end),
+        *lengths(declared.sizes.values(), own, section),
+        *measures(upright, own, section, end),
+        *standing([*own.values()], section, end),
     ]
     removed = [
         *removed_sections(declared, parameters, bodies, seen, end),
@@ -125,6 +127,15 @@ def contents(
                 one.define(definition)
             dimensions = Supplement(definition, section, end, shown, repeated).complete(dimensions)
         yield Content(section, end, some, dimensions, unseen, features, repeated)
+
+
+def _is_upright(body: Body) -> bool:
+    """Return whether a part stands with its z axis along the shaft; bolts and dowels across it do not.
+
+    Those are dimensioned on their own sheets.
+    """
+    turn, _ = rigid(body.places[0])
+    return bool(turn[2, 2] > 1 - 1e-9)
 
 
 def _standing(seen: PartSurfaces, body: Body) -> PartSurfaces:

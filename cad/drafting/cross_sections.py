@@ -45,7 +45,7 @@ class _Web:
         """Return whether both sections look the same."""
         one, two = (sorted(_corners(web.view)) for web in (self, other))
         return len(one) == len(two) and all(
-            hypot(a[0] - b[0], a[1] - b[1]) < 1e-3 for a, b in zip(one, two, strict=True)
+            hypot(a[0] - b[0], a[1] - b[1]) < 2e-3 for a, b in zip(one, two, strict=True)
         )
 
 
@@ -105,15 +105,16 @@ def _pins(seen: PartSurfaces, span: tuple[float, float], frame: Frame) -> tuple[
     beside = [c for c in _along(seen) if _is_beside(c)]
     within = [c for c in beside if span[0] < sum(c.reach) / 2 < span[1]]
     middle = sum(span) / 2
-    nearest = sorted(beside, key=lambda c: (abs(sum(c.reach) / 2 - middle), -c.diameter))[:1]
+    next_to = [c for c in beside if min(abs(a - b) for a in span for b in c.reach) < c.diameter / 4]
+    nearest = sorted(next_to, key=lambda c: (abs(sum(c.reach) / 2 - middle), -c.diameter))[:1]
     points = (frame.flat(c.point) for c in within or nearest)
     return tuple(dict.fromkeys((round(x, 4) + 0.0, round(y, 4) + 0.0) for x, y in points))
 
 
 def _corners(view: View) -> Iterator[Point]:
+    """Yield the corners of the outer outlines; bores and drillings make no web another one."""
     for cut in view.cut:
-        for line in cut.outlines:
-            yield from ((x, y) for x, y, _ in line)
+        yield from ((round(x, 3) + 0.0, round(y, 3) + 0.0) for x, y, _ in cut.outlines[0])
 
 
 def _dimensioned(

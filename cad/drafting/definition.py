@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from itertools import combinations
+from itertools import combinations, pairwise
 from math import atan2, degrees, dist, hypot
 from typing import Literal
 
@@ -105,6 +105,8 @@ class Definition:
         is_new = measure.sort not in ("diameter", "width") and self._adds_own(measure)
         if span[0][0] == "turn":
             self.turns[round(measure.value, 4)] = measure.count
+        if measure.sort == "pitch":
+            return self._add_pattern(span, measure)
         if self.is_symmetric(*span):
             self._symmetric.append(span)
             fresh = not (self.joined(span[0], AXIS) and self.joined(span[1], AXIS))
@@ -114,6 +116,19 @@ class Definition:
         self.join(*span)
         self.settle()
         return is_new or fresh
+
+    def _add_pattern(self, span: tuple[Station, Station], measure: Measure) -> bool:
+        """Join the stations of holes at equal distances, which a pitch with a count describes."""
+        direction = next(one[0] for one in span if one != AXIS)
+        low = min(point[measure.form == "up"] for point in measure.points)
+        run = [station(direction, low + n * measure.value) for n in range(measure.count + 1)]
+        fresh = any(not self.joined(one, other) for one, other in pairwise(run))
+        for one, other in pairwise(run):
+            self.join(one, other)
+        if self.is_symmetric(run[0], run[-1]):
+            self._symmetric.append((run[0], run[-1]))
+        self.settle()
+        return fresh
 
     def _adds_own(self, measure: Measure) -> bool:
         sort = measure.sort
@@ -281,18 +296,26 @@ class Definition:
             return True
         return self.joined(across, AXIS) and self.joined(up, AXIS)
 
+    def is_even(self, hole: Hole) -> bool:
+        """Return whether a hole is one of at least three evenly round their circle."""
+        turns = self._turns(hole)
+        step = 360 / len(turns)
+        return len(turns) > 2 and all(abs(turn - turns[0] - n * step) < 1e-2 for n, turn in enumerate(turns))
+
+    def _turns(self, hole: Hole) -> list[float]:
+        """Return the directions of the holes that are like one, ascending [deg]."""
+        return sorted({round(one.turn, 3) % 360 for one in self.features.holes if one.is_like(hole)})
+
     def is_spaced(self, hole: Hole) -> bool:
         """Return whether a hole belongs to at least three that are evenly spaced on a circle.
 
         One of them, or the middle between two of them, must also lie on a located direction or a centre line.
         """
-        alike = [one for one in self.features.holes if one.is_like(hole)]
-        turns = sorted({round(one.turn % 360, 3) for one in alike})
-        step = 360 / len(turns)
-        even = all(abs(turn - turns[0] - n * step) < 1e-2 for n, turn in enumerate(turns))
+        if not self.is_even(hole):
+            return False
+        turns = self._turns(hole)
         known = any(self.joined(station("turn", turn), ("turn", 0.0)) for turn in turns)
-        mirrored = any(station("turn", turn + step / 2) == ("turn", 0.0) for turn in turns)
-        return len(turns) > 2 and even and (known or mirrored)
+        return known or station("turn", turns[0] + 180 / len(turns)) == ("turn", 0.0)
 
     def components(self, direction: Direction) -> list[list[Station]]:
         """Return the connected groups of stations of one direction, the located group first."""

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from math import hypot
+from math import atan2, degrees, hypot
 
 from cad.drafting.curves import Curve, Point, joined
 from cad.drafting.dimension_layout import PlacedDimension
@@ -112,8 +112,10 @@ def _crosses(view: View, plan: Plan, over: float) -> Iterator[Segment]:
 def _pitched(view: View, plan: Plan, over: float) -> tuple[list[float], Iterator[Segment]]:
     """Return the radii of pitch circles about the shaft, and the centre lines of all holes."""
     middles = _middles(view, plan)
-    away = Counter(round(hypot(*middle), 3) for middle in middles)
-    pitch = [size for size, count in away.items() if count > 2 and size > 0]
+    turns = defaultdict[float, list[float]](list)
+    for x, y in middles:
+        turns[round(hypot(x, y), 3)].append(round(degrees(atan2(y, x)), 3) % 360)
+    pitch = [size for size, some in turns.items() if size > 0 and _are_even(sorted(some))]
 
     def lines() -> Iterator[Segment]:
         for (x, y), radius in middles.items():
@@ -124,6 +126,12 @@ def _pitched(view: View, plan: Plan, over: float) -> tuple[list[float], Iterator
                 yield (x - reach, y), (x + reach, y)
 
     return pitch, lines()
+
+
+def _are_even(turns: Sequence[float]) -> bool:
+    """Return whether at least three directions [deg] are evenly spaced round a circle."""
+    step = 360 / max(len(turns), 1)
+    return len(turns) > 2 and all(abs(turn - turns[0] - n * step) < 1e-2 for n, turn in enumerate(turns))
 
 
 def _longer(segment: Segment, over: float) -> Segment:

@@ -17,12 +17,13 @@ from cad.drafting.views import View
 from cad.step import Body, rigid
 from cad.surfaces import Face, PartSurfaces, Size, Surface, X, Y, Z
 
-Sort = Literal["diameter", "radius", "length", "width", "gap", "offset", "angle", "chamfer", "edge"]
+Sort = Literal["diameter", "radius", "length", "width", "gap", "offset", "angle", "chamfer", "edge", "pitch"]
 Form = Literal["across", "up", "aligned", "circle", "arc", "angle"]
 Place = Literal["section", "end"]
 
 _CLEAR = 1e-6  # [mm], and as the sine of an angle
 _ARC = 1e-5  # [mm]: how near to its surface an edge of the section lies
+_ECCENTRIC = 0.05  # between axes that enclose a wall, as a share of the inner diameter
 _MOST_LEVELS = 14  # planes across one axis; drawings of more would not be read
 
 
@@ -88,24 +89,33 @@ def _standing(bodies: Sequence[Body], seen: Mapping[str, PartSurfaces]) -> Itera
 
 
 def _of_cylinders(seen: PartSurfaces, section: View, end: View) -> Iterator[Measure]:
-    about = []
+    about, counts = [], _counts(seen)
     for cylinder in seen.cylinders:
         if cylinder.along(Z):
             turned = cylinder.turned(Z)
-            yield from _lengthwise(turned, section, end, seen.count * alike(turned, seen))
+            yield from _lengthwise(turned, section, end, seen.count * counts[turned.face])
             about += [turned] if _within(cylinder, section.frame.towards) else []
         elif _within(cylinder, section.frame.towards):
             yield _drilled(cylinder, section, seen.count)
     for one, other in combinations(about, 2):
-        if one.point.cross(Z).sub(other.point.cross(Z)).Length > _CLEAR:
-            continue
         inner, outer = sorted((one, other), key=lambda cylinder: cylinder.diameter)
-        axis = section.frame.flat(one.point)[1]
-        low, high = axis + inner.diameter / 2, axis + outer.diameter / 2
+        if one.point.cross(Z).sub(other.point.cross(Z)).Length > _ECCENTRIC * inner.diameter:
+            continue
+        low, high = (section.frame.flat(c.point)[1] + c.diameter / 2 for c in (inner, outer))
         ends = [_edge_at(section, radius, c.reach) for radius, c in ((low, inner), (high, outer))]
         if high - low > _CLEAR and ends[0] is not None and ends[1] is not None:
             points = ((ends[0], low), (ends[1], high))
             yield Measure("gap", high - low, "section", "up", points, 1, on(inner), on(outer))
+
+
+def _counts(seen: PartSurfaces) -> dict[Face, int]:
+    """Return how many cylinders along the shaft are equal and begin and end together, by their faces."""
+    groups = defaultdict[tuple[float, ...], dict[Face, tuple[float, float]]](dict)
+    for one in (c.turned(Z) for c in seen.cylinders if c.along(Z)):
+        low, high = one.reach
+        foot = round(one.point.x, 4) + 0.0, round(one.point.y, 4) + 0.0
+        groups[round(one.diameter, 5), round(low, 5), round(high, 5)][one.face] = foot
+    return {face: len({*feet.values()}) for feet in groups.values() for face in feet}
 
 
 def alike(cylinder: Surface, seen: PartSurfaces) -> int:

@@ -127,6 +127,9 @@ class _Reader:
         if self._is_tangent(plane) or self._tapers(plane, words):
             return
         away = plane.point.dot(plane.direction)
+        if self._is_of_hexagon(plane):
+            self.found.own["width", 2 * abs(away)] = f"width across flats of {_name(plane)}"
+            return
         x, y = self.frame.flat(plane.middle) if plane.middle is not None else (0.0, 0.0)
         u, v = self.frame.flat(plane.direction)
         foot = x - away * u, y - away * v  # on the line through the shaft beside which the plane runs
@@ -134,6 +137,14 @@ class _Reader:
         self.found.rays[round(turn % 360, 4)] = f"{words} at {turn % 360:.6g}°"
         if abs(away) > _CLEAR:
             self.found.own["width", 2 * abs(away)] = f"width between planes of {_name(plane)}"
+
+    def _is_of_hexagon(self, plane: Surface) -> bool:
+        """Return whether a plane is a flat of a regular hexagon about the axis, which its width defines."""
+        away = plane.point.dot(plane.direction)
+        flats = [p for p in self.planes if p.face[0] == plane.face[0] and abs(p.direction.dot(Z)) < _FLAT]
+        alike = (p for p in flats if abs(abs(p.point.dot(p.direction)) - abs(away)) < _CLEAR)
+        turns = {round(degrees(atan2(p.direction.y, p.direction.x)) % 60, 3) % 60 for p in alike}
+        return len(flats) == 6 and len(turns) == 1
 
     def _tapers(self, plane: Surface, words: str) -> bool:
         """Return whether sections across a bar cut a plane; record taper and place in each section."""
@@ -220,7 +231,8 @@ class _Reader:
 
     def _is_round_end(self, cylinder: Surface) -> bool:
         """Return whether planes touch a cylinder on two sides and no larger cylinder is coaxial."""
-        if any(_are_in_line(c, cylinder) and c.diameter > cylinder.diameter + _CLEAR for c in self.cylinders):
+        larger = (c for c in self.cylinders if c.diameter > cylinder.diameter + _CLEAR)
+        if any(_are_in_line(c, cylinder) for c in larger):
             return False
         beside = [p for p in self.planes if cylinder.along(Z) and abs(p.direction.dot(Z)) < _FLAT]
         away = [(cylinder.point - p.point).dot(p.direction) for p in beside if p.face[0] == cylinder.face[0]]
@@ -245,7 +257,7 @@ class _Reader:
         bore = min(bores, key=lambda c: c.diameter)
         deep = hypot(x, y) + cylinder.diameter / 2 - bore.diameter / 2
         is_wide = hypot(x, y) < cylinder.diameter / 2 < bore.diameter / 2 + _CLEAR
-        if not is_wide:
+        if not is_wide or deep < _CLEAR:
             return False
         edge = relief_height(hypot(x, y), cylinder.diameter / 2, bore.diameter / 2)
         along, at = (self.found.up, edge) if abs(x) > abs(y) else (self.found.across, edge)

@@ -14,12 +14,13 @@ from cad.drafting.views import View
 from cad.surfaces import PartSurfaces, Surface, X, Y, Z
 
 _CLEAR = 1e-6  # [mm]
+_SLIGHT = 0.05  # offset of the axis of an eccentric bore at most, as a share of its diameter
 _ARC = 1e-5  # [mm]: how near to its surface an edge of the section lies
 
 
 def standing(seen: Sequence[PartSurfaces], section: View, end: View) -> list[Measure]:
     """Return all sizes of lugs, joints and chamfers that the views show."""
-    kinds = (of_circles, of_levels, of_arms, of_uprights, of_slots)
+    kinds = (of_circles, of_levels, of_floors, of_arms, of_uprights, of_slots)
     beside = [measure for one in seen for kind in kinds for measure in kind(one, end)]
     return [*beside, *of_walls(seen, section), *of_bevels(seen, section)]
 
@@ -52,14 +53,18 @@ def of_walls(parts: Sequence[PartSurfaces], section: View) -> Iterator[Measure]:
     """
     left = section.box[0][0]
     rings = [one.rings(Z) for one in parts]
-    for bore in [some[0] for some in rings if some]:
-        low = bore[0].diameter / 2
+    beside = [c for one in parts for c in one.cylinders if c.along(Z) and not c.about(Z)]
+    eccentric = [
+        [c] for c in beside if abs(c.point.dot(X)) < _CLEAR and abs(c.point.dot(Y)) < _SLIGHT * c.diameter
+    ]
+    for bore in [*(some[0] for some in rings if some), *eccentric]:
+        low = bore[0].diameter / 2 - abs(bore[0].point.dot(Y))
         for ring in [ring for some in rings for ring in some]:
             high = ring[0].diameter / 2
             if high > low + _CLEAR:
                 points = ((left, low), (left, high))
                 yield Measure("gap", high - low, "section", "up", points, 1, on(*bore), on(*ring))
-        for circle in (c for one in parts for c in one.cylinders if c.along(Z) and not c.about(Z)):
+        for circle in beside:
             reach = circle.point.dot(X) + circle.diameter / 2
             if abs(circle.point.dot(Y)) < _CLEAR < reach - low:
                 points = ((low, 0.0), (reach, 0.0))
@@ -121,6 +126,31 @@ def of_levels(seen: PartSurfaces, end: View) -> Iterator[Measure]:
                     form: Form = "across" if up == 0 else "up"
                     plane = on(*seen.planes_at(axis, level))
                     yield Measure(sort, abs(side - start), "end", form, ends, 1, plane, faces)
+
+
+def of_floors(seen: PartSurfaces, end: View) -> Iterator[Measure]:
+    """Yield the depths of keyways: from a floor between two walls to the cylinder above it."""
+    for floor in (p for p in seen.planes if p.along(X) or p.along(Y)):
+        if (middle := floor.middle) is None:
+            continue
+        flat = end.frame.flat(middle)
+        level = bool(abs(flat[0]) > abs(flat[1]))
+        low = flat[0] if level else flat[1]
+        for bar in (c for c in seen.about(Z) if not c.is_reversed and c.reach[0] < middle.z < c.reach[1]):
+            high = bar.diameter / 2 * (1 if low > 0 else -1)
+            walls = [p for p in seen.planes if _is_wall(p, floor, abs(low), abs(high))]
+            if len(walls) == 2:
+                ends = ((low, 0.0), (high, 0.0)) if level else ((0.0, low), (0.0, high))
+                form: Form = "across" if level else "up"
+                yield Measure("gap", abs(high - low), "end", form, ends, 1, on(floor), on(bar))
+
+
+def _is_wall(plane: Surface, floor: Surface, low: float, high: float) -> bool:
+    """Return whether a plane along the shaft stands on a floor, with its middle between two heights."""
+    if plane.middle is None or floor.middle is None or abs(plane.direction.dot(Z)) > _CLEAR:
+        return False
+    height, away = abs(plane.middle.dot(floor.direction)), (plane.middle - floor.middle).Length
+    return abs(plane.direction.dot(floor.direction)) < _CLEAR and low < height < high and away < high
 
 
 def of_bevels(parts: Sequence[PartSurfaces], section: View) -> Iterator[Measure]:

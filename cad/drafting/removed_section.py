@@ -177,7 +177,13 @@ def mark(page: Page, room: Room, removed: RemovedSection, section: View) -> None
 
 
 def _mark_across(page: Page, room: Room, letter: str, station: float, section: View) -> None:
-    """Draw the ends of a line across the shaft, beyond the shaft there, with arrows and letters."""
+    """Draw the ends of a line across the shaft, beyond the shaft there, with arrows and letters.
+
+    Raises
+    ------
+    NoRoom
+        If it is too near to another one.
+    """
     (_, low), (_, high) = section.box
     width = width_of(letter, TEXT)
     for edge, out in ((high, 1), (low, -1)):
@@ -187,7 +193,10 @@ def _mark_across(page: Page, room: Room, letter: str, station: float, section: V
         page.symbol(arrow((x + 6.0, stop), (x, stop)))
         page.write(letter, x - width - 1.0, stop - TEXT / 2, TEXT)
         ends = sorted((start, stop - TEXT / 2, stop + TEXT / 2))
-        room.add((x - width - 1.5, ends[0], x + 6.5, ends[-1]))
+        box = x - width - 1.5, ends[0], x + 6.5, ends[-1]
+        if not room.is_clear(box, 0.0):
+            raise NoRoom
+        room.add(box)
 
 
 def place(
@@ -261,7 +270,7 @@ def _found(
     height = sides[1] + (high - y) * plan.scale + sides[2]
     near = plan.paper((right, removed.height), plan.beside)
     if removed.stations:
-        near = plan.paper((removed.stations[0], 0.0))[0] - width / 2, room.views[0][1]
+        near = plan.paper((removed.stations[0], 0.0))[0] - width / 2, room.area[1]
 
     def away(corner: Point) -> float:
         return abs(corner[0] - near[0]) + abs(corner[1] + height / 2 - near[1])

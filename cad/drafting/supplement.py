@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
+from itertools import combinations, pairwise
 from math import cos, hypot, radians, sin
 
 from cad.drafting.curves import Point
@@ -50,6 +50,8 @@ class Supplement:
         yield from self._round()
         for direction in ("across", "up"):
             yield from self._levels(direction)
+        for direction in ("across", "up"):
+            yield from self._pitch(direction)
         for hole in self.definition.features.holes:
             yield from self._axis(hole)
         yield from self._turns()
@@ -155,13 +157,23 @@ class Supplement:
         points = (low, foot(self.section, low)), (high, foot(self.section, high))
         return Measure("length", high - low, "section", "across", points)
 
+    def _pitch(self, direction: str) -> Iterator[Measure]:
+        """Yield the distance of holes in rows at equal distances, with its count, as for a grid of holes."""
+        along = int(direction == "up")
+        holes = self.definition.features.holes
+        loose = [h for h in holes if not self.definition.is_even(h) and not self.definition.is_located(h)]
+        at = sorted({round(hole.axis[along], 4) for hole in loose})
+        steps = [high - low for low, high in pairwise(at)]
+        if len(steps) > 1 and max(steps) - min(steps) < _CLEAR:
+            one, other = ((direction, level) for level in at[:2])
+            yield replace(self._between(one, other), sort="pitch", count=len(steps))  # type: ignore[arg-type]
+
     def _axis(self, hole: Hole) -> Iterator[Measure]:
         """Yield the dimensions that locate an axis along the shaft: pitch circle and angle, or offsets."""
         if self.definition.is_located(hole):
             return
         across, up, around, turn = hole_stations(hole)
-        alike = {one.axis for one in self.definition.features.holes if one.is_like(hole)}
-        if not self.definition.joined(around, AXIS) and len(alike) > 2:
+        if not self.definition.joined(around, AXIS) and self.definition.is_even(hole):
             yield Measure("diameter", 2 * hypot(*hole.axis), "end", "circle", ((0.0, 0.0), hole.axis))
         if self.definition.joined(around, AXIS):
             if not self.definition.is_located(hole):

@@ -77,7 +77,7 @@ def views(bodies: Sequence[Body], *, is_shaft: bool = False) -> tuple[View, View
     up = _upright(bodies)
     section, end = Frame(Z, up), Frame(Z.cross(up), up)
     placed = [
-        _PlacedPart(part, body.shape.moved(place), is_shaft or _is_ball(body.shape) or _is_bar(body.shape))
+        _PlacedPart(part, body.shape.moved(place), is_shaft or _is_whole(body.shape))
         for part, body in enumerate(bodies)
         for place in body.places
     ]
@@ -85,8 +85,8 @@ def views(bodies: Sequence[Body], *, is_shaft: bool = False) -> tuple[View, View
 
 
 def is_assembly(bodies: Sequence[Body]) -> bool:
-    """Return whether the bodies form an assembly: balls or bars together with other parts."""
-    whole = [_is_ball(body.shape) or _is_bar(body.shape) for body in bodies]
+    """Return whether the bodies form an assembly: balls, bars or repeated parts with other parts."""
+    whole = [_is_whole(body.shape) or len(body.places) > 1 for body in bodies]
     return any(whole) and not all(whole)
 
 
@@ -149,6 +149,17 @@ class _PlacedPart:
 
 def _is_ball(shape: Shape) -> bool:
     return all(face.geomType() == "SPHERE" for face in shape.Faces())
+
+
+def _is_whole(shape: Shape) -> bool:
+    """Return whether a part is not cut lengthwise: a ball, a bar or a bolt."""
+    return _is_ball(shape) or _is_bar(shape) or _is_bolt(shape)
+
+
+def _is_bolt(shape: Shape) -> bool:
+    """Return whether a shape is a solid cylinder about z with a hexagon head."""
+    seen = look(shape)
+    return (len(seen.planes), len(seen.cylinders), len(seen.about(Z))) == (9, 1, 1)
 
 
 def _is_bar(shape: Shape) -> bool:

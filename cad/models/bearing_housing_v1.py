@@ -6,8 +6,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from cad.model import STEEL, Box, CadModel, Part, mm
+from cad.model import STEEL, Box, Part, mm
+from cad.shells.fastening import Fastening
 from cad.shells.housing import Housing
+from cad.shells.housing_readback import bolt_holes, fastener_sizes, saddle_sizes
+from cad.shells.saddle import SaddleShape
 from cad.shells.split_bore import bore_clearance_rule, breadth_rule, roof_rule, sides_rule
 from cad.surfaces import PartSurfaces, Size, X, Y, Z
 from templates.core.language.template import Array, Truth, derived, formula, given, require
@@ -16,20 +19,29 @@ IRON: tuple[float, float, float] = (0.42, 0.44, 0.47)
 IRON_DENSITY = 7200.0  # kg/m³, grey cast iron (EN 1561: 7.10 to 7.30 g/cm³)
 
 
-class BearingHousing(CadModel):
-    """Housing of a main bearing: block, cap, bore, bolt holes and the drilling that feeds the oil.
+class BearingHousing(SaddleShape, Fastening):
+    """Housing of a main bearing: block and cap with the bore between them, bolts, dowels, oil drilling.
 
     z is along the shaft, and the joint is in the plane y = 0. The block is the half at +y, the cap the half
-    at -y; each is a box. Two bolt holes pass through the cap and end blind, with flat bottoms, in the block.
-    The oil drilling runs from the top of the block to the bore. Block and cap are made of grey cast iron.
+    at -y; each is a box of grey cast iron. Two bolt holes pass through the cap and end blind, with flat
+    bottoms, in the block. The oil drilling runs from the top of the block to the bore.
 
-    A diameter of 0 omits the bolt holes or the drilling.
+    A size of 0 omits the feature:
+
+    - shoulder depth: the cap has a crown in its middle and shoulders on both sides, the seats of the bolts.
+    - bulkhead thickness: the block is a saddle as wide as the cap up to the saddle height, and a thinner
+      bulkhead above it.
+    - bolt diameter: two bolts with hexagon heads stand on their seats. Their holes in the block are then as
+      wide as the bolts, because threads are not drawn, and those in the cap as wide as the bolt holes.
+    - dowel diameter: two hollow dowels about the bolts hold the cap in its place, half in each counterbore.
+    - bolt hole diameter and oil drilling diameter.
 
     Limits
     ------
-    The part is for mating with shells; it is not a casting: it has no ribs, fillets, dowels, threads or tang
-    notches. Default sizes are typical of engines and do not come from a standard. The bore has its nominal
-    size; give its tolerance with the parameter.
+    The part is for mating with shells; it is not a casting: it has no ribs, fillets, threads or tang notches.
+    Default sizes are typical of engines and do not come from a standard. The bore has its nominal size; give
+    its tolerance with the parameter. Finite elements take block, cap and dowels as one body of cast iron,
+    without the bolts.
 
     References
     ----------
@@ -46,7 +58,18 @@ class BearingHousing(CadModel):
         "bolt_spacing": "78 mm",
         "bolt_hole_depth": "50 mm",
         "oil_drilling_diameter": "5 mm",
+        "shoulder_depth": "16 mm",
+        "crown_width": "58 mm",
+        "bulkhead_thickness": "15 mm",
+        "saddle_height": "40 mm",
+        "bolt_diameter": "10 mm",
+        "bolt_length": "70 mm",
+        "bolt_head_width": "16 mm",
+        "bolt_head_height": "6.4 mm",
+        "dowel_diameter": "14 mm",
+        "dowel_length": "16 mm",
     }
+    keeps_apart = True
     toleranced = {
         "housing_bore": {"datum": "A", "cylindricity": 0.5},
         "housing_width": {"perpendicularity": 1, "to": "A"},
@@ -57,6 +80,16 @@ class BearingHousing(CadModel):
         "oil_drilling_diameter": {},
         "bolt_spacing": {},
         "bolt_hole_depth": {},
+        "shoulder_depth": {},
+        "crown_width": {},
+        "bulkhead_thickness": {},
+        "saddle_height": {},
+        "bolt_diameter": {},
+        "bolt_length": {},
+        "bolt_head_width": {},
+        "bolt_head_height": {},
+        "dowel_diameter": {},
+        "dowel_length": {},
     }
 
     D: Array = given("mm", "housing bore", symbol="D_h", ge=2, le=2000)
@@ -127,11 +160,12 @@ class BearingHousing(CadModel):
         return ((self.d_b <= 0) | (self.d_b >= least)) & ((self.d_o <= 0) | (self.d_o >= least))
 
     def build(self) -> tuple[Part, ...]:
-        """Return the block and cap."""
+        """Return the block and cap, with dowels and bolts if there are any."""
         housing = self.drawn()
         return (
             Part("block", housing.block(), housing.block_volume(), IRON, IRON_DENSITY, material="cast iron"),
             Part("cap", housing.cap(), housing.cap_volume(), STEEL, IRON_DENSITY, material="cast iron"),
+            *self.fasteners(),
         )
 
     def drawn(self) -> Housing:
@@ -146,31 +180,33 @@ class BearingHousing(CadModel):
             bolt_axis=mm(self.a_b) / 2,
             bolt_depth=mm(self.l_b),
             drilling=mm(self.d_o) / 2,
+            thread=mm(self.d_s) / 2,
+            shoulder=mm(self.h_s),
+            half_crown=mm(self.W_c) / 2,
+            half_bulkhead=mm(self.t_h) / 2,
+            saddle=mm(self.h_d),
+            dowel=mm(self.d_p) / 2,
+            dowel_depth=mm(self.l_p) / 2,
         )
 
     def bounding_box(self) -> Box:
-        """Return the box of block and cap together."""
+        """Return the box of block and cap together, and of the heads of the bolts."""
         a, b = mm(self.A) / 2, mm(self.B) / 2
-        return Box((-a, -mm(self.H_c), -b), (a, mm(self.H_b), b))
+        head = mm(self.h_e) + mm(self.k_s) if self.d_s > 0 else 0.0
+        return Box((-a, -max(mm(self.H_c), head), -b), (a, mm(self.H_b), b))
 
     def dimensions(self, seen: Mapping[str, PartSurfaces]) -> dict[str, float]:
-        """Return every parameter; spacing and depth of bolt holes only if there are any."""
+        """Return every parameter; those of a feature only if there is one."""
         block, cap = seen["block"], seen["cap"]
-        holes = [hole.turned(Y) for hole in block.cylinders if hole.along(Y)]
-        bolts = [hole for hole in holes if not hole.about(Y)]
-        oil = [hole for hole in holes if hole.about(Y)]
-        sizes: dict[str, float] = {
+        oil = [hole for hole in block.cylinders if hole.along(Y) and hole.about(Y)]
+        return {
             "housing_bore": block.diameters(Z)[0],
             "housing_width": block.length(Z),
             "housing_breadth": block.length(X),
             "block_height": block.length(Y),
             "cap_height": cap.length(Y),
-            "bolt_hole_diameter": Size.diameter(bolts) if bolts else 0.0,
             "oil_drilling_diameter": Size.diameter(oil) if oil else 0.0,
+            **bolt_holes(block, cap),
+            **saddle_sizes(block, cap),
+            **fastener_sizes(seen),
         }
-        if bolts:
-            left, right = [b for b in bolts if b.point.x < 0], [b for b in bolts if b.point.x > 0]
-            spacing = max(b.point.x for b in right) - min(b.point.x for b in left)
-            sizes["bolt_spacing"] = Size.distance(spacing, left, right)
-            sizes["bolt_hole_depth"] = block.apart(Y, 0.0, bolts[0].reach[1])
-        return sizes

@@ -9,10 +9,13 @@ import numpy as np
 
 from cad.cranks.counterweights import count, sectors, stand_out, there_is_none, webs_of
 from cad.cranks.crankshaft_readback import ShaftReadback
-from cad.cranks.end_parameters import EndParameters
+from cad.cranks.end_features import EndFeatures
+from cad.cranks.end_readback import EndReadback
+from cad.cranks.planes_across import PlanesAcross
 from cad.cranks.rules import clear_of_corners, corner
 from cad.cranks.split_parameters import SplitParameters, are_split, shortest, where_split
 from cad.cranks.split_pins import SplitPins
+from cad.cranks.thrust import ThrustParameters
 from cad.cranks.whole import Throws, WholeShaft
 from cad.model import Box, Dimension, Part, mm
 from cad.shaft import Shaft
@@ -22,7 +25,7 @@ from templates.core.language.template import Array, Truth, curve, formula, profi
 MOST_THROWS = 16
 
 
-class Crankshaft(SplitParameters, EndParameters):
+class Crankshaft(SplitParameters, ThrustParameters, EndFeatures):
     """Crankshaft with any number of throws, their pins undivided or split: counterweights, nose and flange.
 
     z is the axis of rotation; z = 0 is the middle of the first main journal. The nose is at -z, the flange at
@@ -34,9 +37,9 @@ class Crankshaft(SplitParameters, EndParameters):
     a middle web: two half circles about the pins, joined by lines. Each outer web, with its counterweight,
     has the angle of the pin next to it.
 
-    A size of 0 omits a bore, fillet, oil drilling, counterweight, bolt hole or inclination. The counterweight
-    radius is one number, or a list with one for each outer web starting at the nose, two for each throw; all
-    counterweights have the same angle.
+    A size of 0 omits a bore, fillet, chamfer, keyway, oil drilling, counterweight, bolt hole or inclination.
+    The counterweight radius is one number, or a list with one for each outer web starting at the nose, two
+    for each throw; all counterweights have the same angle.
 
     Fillets run round pins and journals where these meet a web. The bore of the journals passes through the
     whole shaft, the bore of each pin through the pin and both webs; with split pins, through the outer web up
@@ -46,8 +49,13 @@ class Crankshaft(SplitParameters, EndParameters):
     opposite the pin, as thick as their webs. Bolt holes are blind with flat bottoms; the first is on the x
     axis.
 
+    The keyway is open at the end of the nose, where the shaft has a chamfer or none, and its inner end is
+    square; it lies on the x axis. The thrust main is the number of a main journal from the nose, 1 for the
+    first, 0 for none: each web beside it has a collar, whose face takes the thrust, and an outermost main has
+    one collar. The journal length is measured between the webs, not between the collars.
+
     The face inclination removes material from the outer face of each outer web, from next to the journal
-    fillet to the end beyond the pin: at 0 the web is heaviest.
+    fillet (with a thrust main from beyond the collars) to the end beyond the pin: at 0 the web is heaviest.
 
     The rotating couple, the integral of z (x + i y) over the mass, can be calculated from the measurements:
     mass centre_z centre_x - inertia_xz, and mass centre_z centre_y - inertia_yz.
@@ -55,10 +63,10 @@ class Crankshaft(SplitParameters, EndParameters):
     Limits
     ------
     There are at most 16 throws of one size, all split by the same angle of at least 1 deg; webs are at least
-    2 % wider than journal and pin with their fillets. Journals, pins, nose and flange are plain cylinders
-    without grooves, keyways, threads or fillets at the shoulders of the ends; a counterweight spans at most
-    half a turn. Two drillings that end in one journal must not meet, so drillings are refused if neighbouring
-    pins have nearly the same angle. The analysis `unit_loads` does not support split pins.
+    2 % wider than journal and pin with their fillets. Journals and pins are plain cylinders, and the ends
+    have no grooves or threads; a counterweight spans at most half a turn. Two drillings that end in one
+    journal must not meet, so drillings are refused if neighbouring pins have nearly the same angle. The
+    analysis `unit_loads` does not support split pins, and that of a chain of throws leaves out the collars.
 
     References
     ----------
@@ -90,6 +98,16 @@ class Crankshaft(SplitParameters, EndParameters):
         "bolt_holes": 6,
         "bolt_hole_diameter": "10 mm",
         "bolt_circle_diameter": "68 mm",
+        "nose_fillet": "2 mm",
+        "flange_fillet": "3 mm",
+        "nose_chamfer": "1.5 mm",
+        "flange_chamfer": "1 mm",
+        "keyway_width": "8 mm",
+        "keyway_depth": "4 mm",
+        "keyway_length": "32 mm",
+        "thrust_main": 3,
+        "thrust_diameter": "66 mm",
+        "thrust_height": "1 mm",
     }
     toleranced = {
         "journal_diameter": {"datum": "A", "cylindricity": 0.5},
@@ -113,6 +131,15 @@ class Crankshaft(SplitParameters, EndParameters):
         "flange_thickness": {},
         "bolt_hole_depth": {},
         "middle_web_width": {},
+        "nose_fillet": {},
+        "flange_fillet": {},
+        "nose_chamfer": {},
+        "flange_chamfer": {},
+        "keyway_width": {},
+        "keyway_depth": {},
+        "keyway_length": {},
+        "thrust_diameter": {},
+        "thrust_height": {},
     }
 
     R_w: Array = curve(
@@ -187,7 +214,9 @@ class Crankshaft(SplitParameters, EndParameters):
             Throws(self.throw_drawn(radii[2 * k]), self.throw_drawn(radii[2 * k + 1]), angle)
             for k, angle in enumerate(angles)
         )
-        return WholeShaft(tuple(throws), *self.ends_drawn(), self._split())
+        nose, flange, bolts = self.ends_drawn()
+        nose, flange, keyway = self.featured(nose, flange)
+        return WholeShaft(tuple(throws), nose, flange, bolts, self._split(), keyway, *self.collar_drawn())
 
     def _split(self) -> SplitPins | None:
         if not are_split(self.delta):
@@ -211,7 +240,9 @@ class Crankshaft(SplitParameters, EndParameters):
     def dimensions(self, seen: Mapping[str, PartSurfaces]) -> dict[str, Dimension]:
         """Return every parameter; the angle of counterweights and the bolt circle only if there are any."""
         split = bool(are_split(self.delta))
-        found = ShaftReadback(seen[self.id], split)
+        throws, thrust = round(float(self.n)), round(float(self.k_t))
+        planes = PlanesAcross(seen[self.id], split, bool(self.b_k > 0), thrust, throws)
+        found = ShaftReadback(seen[self.id], planes)
         radii = found.counterweights()
         near = np.degrees(np.atleast_1d(self.psi)).tolist()
         dimensions: dict[str, Dimension] = {
@@ -219,8 +250,7 @@ class Crankshaft(SplitParameters, EndParameters):
             **found.common(),
             "pin_split": found.pin_split(float(np.degrees(self.delta))),
             "counterweight_radius": radii if np.ndim(self.R_w) else found.counterweight(),
-            **found.flange(),
-            **found.bolts(),
+            **EndReadback(found).sizes(),
         }
         if split:
             dimensions |= found.middle_web()

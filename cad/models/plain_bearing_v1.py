@@ -57,6 +57,10 @@ class PlainBearing(ShellRules):
       mirror image of the upper one, so the tangs meet. The notch on the inside, from which the tang was
       pressed out, is not drawn.
     - *Relief*: near each joint the bore opens gradually, to the depth of the relief at the joint.
+    - *Wall reduction*: an eccentric bore, whose wall is thinner towards the joints. The reduction is the
+      difference between the wall at the crown and the wall at the reduction height above the joint, measured
+      radially; 0 makes a concentric bore. Bore and wall are those at the crown. The back stays round, so the
+      lining is thinner towards the joints.
     - *Chamfers* of 45°: on the bore at both ends, on the back at ends without a flange.
     - *Groove angle*: the angle of the groove, centred on the crown; at 180° it runs from joint to joint.
     - *Flanges*: thrust flanges of the back, one at +z or two.
@@ -77,7 +81,8 @@ class PlainBearing(ShellRules):
     ------
     The features of a shell and their names are those of ISO 3548-1, which gives no sizes for most of them.
     Default sizes are typical of engines and do not come from a standard: the free spread is 1 % of the bore;
-    Cummins' manual states about 0.64 mm. The wall has a constant thickness (no eccentric bore).
+    Cummins' manual states about 0.64 mm. A shell with an eccentric bore is fitted, has a lining and no joint
+    relief.
 
     The curvature of a free shell changes uniformly: the model neglects that grooves and flanges change the
     local stiffness, the contact pressure of the seat, and the loss of spread in a hot engine. In the file of
@@ -92,6 +97,8 @@ class PlainBearing(ShellRules):
         methods of test; 4.4, free spread.
     TM 5-3820-256-24-5 (Cummins CGES-185-3), Connecting rods, pistons, rings and sleeves, figure 11: bearing
         spread, the width over the open ends beyond the bore of rod or crankcase.
+    IPD, Measuring wall thickness of main and rod bearings (Engine Builder, December 2011): eccentricity as
+        the difference between the wall at the crown and about 3/8 in (9.5 mm) above the parting line.
     ISO 4383:2012, Plain bearings, multilayer materials for thin-walled plain bearings: AlSn20Cu on steel. Its
         density here is that of the mixture of its elements.
     """
@@ -181,6 +188,11 @@ class PlainBearing(ShellRules):
         """The wall of a shell in the free state is at most 20 % of the bore."""
         return is_fitted(self.state) | (self.t <= 0.2 * self.d)
 
+    @require("state", "wall_reduction", remedy="draw the shell fitted, or with a wall reduction of 0")
+    def an_eccentric_shell_is_fitted(self) -> Truth:
+        """A shell with an eccentric bore is drawn fitted."""
+        return is_fitted(self.state) | (self.delta <= 0)
+
     @require(
         "state", "free_spread", "shells", remedy="draw it fitted with a free spread of 0, or half shells"
     )
@@ -244,6 +256,8 @@ class PlainBearing(ShellRules):
             flange=Flange(mm(self.D_f) / 2 + wider, mm(self.b_f), round(float(self.n_f)))
             if self.D_f > 0 else None,
             lift=np.pi / 2 - angle,
+            offset=mm(self.offset),
+            reduction_height=mm(self.h_delta),
         )  # fmt: skip
 
     def bounding_box(self) -> Box:

@@ -33,5 +33,6 @@ def bore_place(shape: CadModel) -> BorePlace | None:
         end = drawn.big_end
         return BorePlace(end.bore, end.half_width, drawn.distance, drawn.pin_bore, STEEL_MATERIAL)
     if isinstance(drawn, Housing):
-        return BorePlace(drawn.bore, drawn.half_width, drawn.block_height, None, CAST_IRON_MATERIAL)
+        solids = 4 if drawn.dowel > 0 else 2  # block, cap and dowels, which fill their counterbores
+        return BorePlace(drawn.bore, drawn.half_width, drawn.block_height, None, CAST_IRON_MATERIAL, solids)
     return None

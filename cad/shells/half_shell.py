@@ -10,6 +10,7 @@ from cadquery.func import cut, extrude, face, fuse, polyline, segment, wire
 from scipy.integrate import quad
 
 from cad.revolution import Point, area, drill, drilled_volume, outline, sheet_under_arc, turned, turned_volume
+from cad.shells.eccentric import EccentricBore
 from cad.shells.relief import Relief
 
 _BEYOND = 10.0  # [deg] by which the tool for a groove from joint to joint extends beyond the joints
@@ -69,6 +70,13 @@ class HalfShell:
     tang: Tang | None
     flange: Flange | None
     lift: float = 0.0  # [rad]
+    offset: float = 0.0  # of the axis of an eccentric bore, which has no relief and is not free
+    reduction_height: float = 0.0  # above the joint, where the wall reduction is measured
+
+    @property
+    def eccentric(self) -> EccentricBore:
+        """Return the bore, whose axis may be offset."""
+        return EccentricBore(self.bore, self.offset)
 
     @property
     def turn(self) -> float:
@@ -122,7 +130,7 @@ class HalfShell:
         If the groove divides the lining, return the section of the piece on the side +z.
         """
         b, c, s = self.half_width, self.inner_chamfer, self.lining
-        inside = self.bore + (self.relief.depth if self.relief else 0.0)
+        inside = self.eccentric.joint + (self.relief.depth if self.relief else 0.0)
         up = [(s, max(self.bore + c - s, 0.0)), (min(self.bore + c, s), max(self.bore + c - s, 0.0))]
         up.append((inside, max(self.bore + c - inside, 0.0)))
         if c == 0:
@@ -228,7 +236,10 @@ class HalfShell:
         """Return the cross-section of the lining with both reliefs."""
         right, left = self.lift, pi - self.lift
         edges = [self._arc(self.lining, right, left, z)]
-        deep, inner = self.bore, [self._arc(self.bore, right, left, z)]
+        deep, inner = self.eccentric.joint, [self._arc(self.bore, right, left, z)]
+        if self.offset > 0:
+            ends = [self._at(deep, end, z) for end in (right, left)]
+            inner = [Edge.makeThreePointArc(ends[0], Vector(0, self.bore, z), ends[1])]
         if self.relief:
             deep, angle = self.bore + self.relief.depth, self.relief.angle
             inner = [
@@ -269,7 +280,7 @@ class HalfShell:
     def lining_volume(self) -> float:
         """Return the volume of the whole lining, in one piece or two [mm³]."""
         r, s = self.bore, self.lining
-        volume = (s * s - r * r) * self.turn * self.half_width
+        volume = self.eccentric.sector(s, self.turn) * 2 * self.half_width
         volume += 2 * area(self.lining_joint()) * self.crush * (2 if self.is_split else 1)
         volume -= self._groove_between(r, s) + self._hole(r, s) + 2 * self._chamfer()
         if self.relief:
@@ -282,19 +293,23 @@ class HalfShell:
         if self.groove is None or self.groove.bottom <= inside:
             return 0.0
         turn = self.turn if self.groove.is_whole else self.groove.turn
-        return (min(self.groove.bottom, outside) ** 2 - inside**2) * self.groove.half_width * turn
+        within = EccentricBore(inside, self.offset if inside == self.bore else 0.0)
+        return within.sector(min(self.groove.bottom, outside), turn) * 2 * self.groove.half_width
 
     def _hole(self, inside: float, outside: float) -> float:
+        offset = self.offset if inside == self.bore else 0.0
         if self.groove is None or self.groove.bottom <= inside:
-            return drilled_volume(self.hole, outside, inside)
+            return drilled_volume(self.hole, outside, inside, offset=offset)
         bottom = min(self.groove.bottom, outside)
-        return drilled_volume(self.hole, outside, inside, bottom, self.groove.half_width)
+        return drilled_volume(self.hole, outside, inside, bottom, self.groove.half_width, offset)
 
     def _chamfer(self) -> float:
         """Return the volume of lining that the bore's chamfer removes at one end [mm³]."""
         c, r = self.inner_chamfer, self.bore
         if c == 0:
             return 0.0
+        if self.offset > 0:
+            return self.eccentric.chamfered(c, self.lining)
         reach = min(c, self.lining - r)
         section = outline((r, 0.0), (r, c), (r + reach, c - reach), (r + reach, 0.0))
         return turned_volume(section, degrees(self.turn))

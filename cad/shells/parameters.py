@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from cad.model import CadModel
-from templates.core.language.template import Array, Truth, choice, derived, formula, given, units
+from cad.shells.eccentric import offset_of, reduction_at
+from templates.core.language.template import Array, Truth, choice, derived, formula, given, shared, units
 
 
 @units("m", "m", returns="1")
@@ -39,6 +40,12 @@ def drawable(length: Array, least: float) -> Truth:
 def if_drawable(length: Array, least: float) -> Array:
     """Return a length [m], or 0 if it is below `least` micrometres."""
     return np.where(drawable(length, least), length, 0 * length)[()]
+
+
+@units("m", "m", returns="m")
+def if_concentric(depth: Array, reduction: Array) -> Array:
+    """Return the depth of a relief, or 0 if the wall reduction says that the bore is eccentric."""
+    return np.where(reduction <= 0, depth, 0 * depth)[()]
 
 
 class ShellParameters(CadModel):
@@ -95,6 +102,26 @@ class ShellParameters(CadModel):
         """Return the default height above the back."""
         return 0.4 * self.t
 
+    @derived("mm", "wall reduction", symbol=r"\delta", ge=0, le=100)
+    def delta(self) -> Array:
+        """Return the default: a concentric bore, with a wall of constant thickness."""
+        return 0 * self.d
+
+    @derived("mm", "reduction height", symbol=r"h_\delta", ge=0.05, le=1500)
+    def h_delta(self) -> Array:
+        """Return the default height above the joint at which the wall reduction is measured."""
+        return 0.2 * self.d
+
+    @shared(unit="mm")
+    def offset(self) -> Array:
+        """Offset of the axis of an eccentric bore."""
+        return offset_of(self.d / 2, self.delta, self.h_delta)
+
+    @shared(unit="mm")
+    def drop(self) -> Array:
+        """Difference between the wall at the crown and at the joint."""
+        return reduction_at(self.d / 2, self.offset, 0 * self.d)
+
     @derived("mm", "relief height", symbol="h_r", ge=0.05, le=1500)
     def h_r(self) -> Array:
         """Return the default height above the joint."""
@@ -103,7 +130,7 @@ class ShellParameters(CadModel):
     @derived("mm", "relief depth", symbol="d_r", ge=0, le=100)
     def d_r(self) -> Array:
         """Return the default depth at the joint: a tenth of the lining, or 0 if that cannot be built."""
-        return joints(self.shells) * if_drawable(0.1 * self.t_l, 1.0)
+        return joints(self.shells) * if_concentric(if_drawable(0.1 * self.t_l, 1.0), self.delta)
 
     @derived("mm", "inner chamfer", symbol="c_i", ge=0, le=500)
     def c_i(self) -> Array:

@@ -116,6 +116,39 @@ class ShellRules(ShellParameters):
         """The chamfer of the bore ends at least 5 % of the lining thickness away from the lining's back."""
         return abs(self.c_i - self.t_l) >= 0.05 * self.t_l
 
+    @require("wall_reduction", "lining_thickness", "inner_diameter", "reduction_height",
+             remedy="make the reduction smaller or the lining thicker, or 0 for none")  # fmt: skip
+    def reduction_within_lining(self) -> Truth:
+        """At the joint, an eccentric bore takes at most 40 % of the lining."""
+        return (self.delta <= 0) | (self.drop <= 0.4 * self.t_l)
+
+    @require("wall_reduction", remedy="use 0 for a concentric bore")
+    def reduction_is_drawable(self) -> Truth:
+        """The wall reduction is 0, or at least 1 µm."""
+        return drawable(self.delta, 1.0)
+
+    @require("reduction_height", "inner_diameter", remedy="measure the reduction nearer to the joint")
+    def reduction_is_measured_low(self) -> Truth:
+        """The wall reduction is measured at most 35 % of the bore above the joint."""
+        return self.h_delta <= 0.35 * self.d
+
+    @require("wall_reduction", "relief_depth", "shells", remedy="use 0 for one of them")
+    def reduction_replaces_relief(self) -> Truth:
+        """A shell with an eccentric bore has joints, and no joint relief."""
+        return (self.delta <= 0) | ((self.d_r <= 0) & (joints(self.shells) > 0))
+
+    @require("wall_reduction", "oil_groove_depth", "inner_diameter", "reduction_height",
+             remedy="make the groove deeper or the reduction smaller")  # fmt: skip
+    def groove_is_deeper_than_reduction(self) -> Truth:
+        """A groove is at least 2.2 times as deep as an eccentric bore is below the crown at the joint."""
+        return (self.delta <= 0) | (self.t_g <= 0) | (self.t_g >= 2.2 * self.drop)
+
+    @require("wall_reduction", "inner_chamfer", "inner_diameter", "reduction_height",
+             remedy="make the chamfer larger, or 0 for none")  # fmt: skip
+    def chamfer_is_deeper_than_reduction(self) -> Truth:
+        """A chamfer of the bore is at least 10 % deeper than an eccentric bore at the joint."""
+        return (self.delta <= 0) | (self.c_i <= 0) | (self.c_i >= 1.1 * self.drop)
+
     @require("inner_chamfer", "relief_depth", remedy="make the chamfer larger, or 0 for none")
     def chamfer_is_deeper_than_relief(self) -> Truth:
         """A chamfer of the bore is at least 10 % deeper than the joint relief."""

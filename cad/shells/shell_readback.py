@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from math import asin, degrees, hypot, pi
 
 from cad.revolution import nearest
+from cad.shells.eccentric import reduction_at
 from cad.shells.half_shell import HalfShell
 from cad.shells.relief import read_relief
 from cad.surfaces import PartSurfaces, Place, Size, Surface, Y, Z, faces_of
@@ -34,7 +35,8 @@ class ShellReadback:
         """
         joint = self.back.levels(Y)[0 if side > 0 else -1] if side else 0.0
         return {
-            "inner_diameter": Size.diameter(self.bore_ring),
+            "inner_diameter": self.bore_diameter,
+            "wall_reduction": self.reduction,
             "wall": self.wall,
             "width": self.back.length(Z),
             "lining_thickness": self.lining_wall,
@@ -50,12 +52,34 @@ class ShellReadback:
         """Return the distance of the joint from the axis of the shaft [mm]; 0 for a full bush."""
         if side == 0:
             return 0.0
-        return Size.distance(-side * joint + 0.0, self.bore_ring, self.back.planes_at(Y, joint))
+        about = self.outside_ring if self.wanted.offset > 0 else self.bore_ring
+        return Size.distance(-side * joint + 0.0, about, self.back.planes_at(Y, joint))
 
     @property
     def bore_ring(self) -> list[Surface]:
         """Return the faces of the bore."""
-        return self.lining.rings(Z)[0]
+        if self.wanted.offset == 0:
+            return self.lining.rings(Z)[0]
+        return [one.turned(Z) for one in self.lining.cylinders if one.along(Z) and not one.about(Z)]
+
+    @property
+    def offset(self) -> float:
+        """Return the distance between the axis of the bore and that of the shaft [mm]."""
+        return abs(self.bore_ring[0].point.y) if self.wanted.offset > 0 else 0.0
+
+    @property
+    def bore_diameter(self) -> float:
+        """Return the diameter of the bore at the crown; no face has it if the bore is eccentric."""
+        return 2 * self.bore if self.wanted.offset > 0 else Size.diameter(self.bore_ring)
+
+    @property
+    def reduction(self) -> float:
+        """Return the wall reduction at its height above the joint [mm]."""
+        return float(reduction_at(self.bore, self.offset, self.wanted.reduction_height))
+
+    def _thickness(self, outer: list[Surface]) -> float:
+        """Return the wall between the bore at the crown and cylinders about the shaft."""
+        return Size.distance(outer[0].diameter / 2 - self.bore, self.bore_ring, outer)
 
     @property
     def outside_ring(self) -> list[Surface]:
@@ -65,12 +89,12 @@ class ShellReadback:
     @property
     def bore(self) -> float:
         """Return the radius of the bore [mm]."""
-        return self.bore_ring[0].diameter / 2
+        return self.bore_ring[0].diameter / 2 - self.offset
 
     @property
     def wall(self) -> float:
         """Return the wall thickness of back and lining together [mm]."""
-        return Size.wall(self.bore_ring, self.outside_ring)
+        return self._thickness(self.outside_ring)
 
     @property
     def outside(self) -> float:
@@ -80,7 +104,7 @@ class ShellReadback:
     @property
     def lining_wall(self) -> float:
         """Return the thickness of the lining [mm]; 0 if there is none."""
-        return Size.wall(self.bore_ring, self.lining.rings(Z)[-1]) if self.wanted.is_lined else 0.0
+        return self._thickness(self.lining.rings(Z)[-1]) if self.wanted.is_lined else 0.0
 
     @property
     def groove_turn(self) -> float:
@@ -105,7 +129,8 @@ class ShellReadback:
         half = self.width() / 2
         bore, outside = self.bore_ring, self.outside_ring
         flange = self.wanted.flange
-        sizes = {"inner_chamfer": self.lining.chamfer(half - max(c.reach[1] for c in bore), bore)}
+        drop = self.wanted.eccentric.drop if self.wanted.inner_chamfer > 0 else 0.0
+        sizes = {"inner_chamfer": self.lining.chamfer(half - max(c.reach[1] for c in bore) + drop, bore)}
         if flange is None or flange.count == 1:
             reach = min(c.reach[0] for c in outside)
             sizes["outer_chamfer"] = self.back.chamfer(half + reach, outside)
@@ -114,7 +139,7 @@ class ShellReadback:
     def relief(self) -> dict[str, float]:
         """Return the height and depth of the joint relief."""
         circles = [c for c in self.lining.cylinders if c.along(Z) and not c.about(Z)]
-        if not circles:
+        if not circles or self.wanted.offset > 0:
             return {"relief_depth": 0.0}
         one = circles[0]
         height, depth = read_relief(self.bore, hypot(one.point.x, one.point.y), one.diameter / 2)
@@ -132,7 +157,7 @@ class ShellReadback:
         return {
             **sizes,
             "oil_groove_width": self._groove_width(groove.half_width),
-            "oil_groove_depth": Size.wall(self.bore_ring, self._groove_bottom()),
+            "oil_groove_depth": self._thickness(self._groove_bottom()),
             "oil_groove_angle": self._groove_angle(),
         }
 
@@ -153,7 +178,8 @@ class ShellReadback:
 
     def _groove_bottom(self) -> list[Surface]:
         lining = self.lining.rings(Z)
-        return lining[1] if len(lining) == 3 else self.back.rings(Z)[1]
+        inner = 1 if self.wanted.offset == 0 else 0  # an eccentric bore is not about the shaft
+        return lining[inner] if len(lining) == inner + 2 else self.back.rings(Z)[1]
 
     def tang(self) -> dict[str, float]:
         """Return the sizes of the locating lip on the back."""

@@ -83,6 +83,7 @@ class FreeShellReadback(ShellReadback):
         return {
             "inner_diameter": 2 * fitted - self.wall,
             "wall": self.wall,
+            "wall_reduction": 0.0,
             "width": self.back.length(Z),
             "lining_thickness": self.lining_wall,
             "crush_height": crush,

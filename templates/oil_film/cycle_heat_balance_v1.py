@@ -44,6 +44,7 @@ from templates.physics.journals.oil import by_law
 from templates.physics.numerics.arrays import spread
 from templates.physics.orbits.cyclic_film import CycleFilm, Duty
 from templates.physics.supplied.fed_cycle import FedDuty, FedOrbit, fed_film, fed_orbit
+from templates.physics.supplied.supply_geometry import sleeve_motion, supply_kind
 
 BOOKER = "Booker 1965"
 ORBIT = "Booker 1965; supplied: Woloszynski et al. 2015"
@@ -95,8 +96,11 @@ class CycleHeatBalance(Oil, FedBearing):
     shear of the oil that is present; the shear rate is unchanged.
     A given dynamic_viscosity is that of the film; heat and shear do not change it.
     Densities and viscosities are those at ambient pressure.
-    No level states an error: there was no comparison of many cases with level supplied, and no measured cycle
-    with all its inputs was available.
+    Level mobility_grooved states errors relative to the balance at level supplied: a one-sided bound from
+    random engines of known balance, as a power law of temperature rise, supply pressure, load number and B/D.
+    They are null with holes, for which there are fewer than 59 engines; with a groove of less than 120° or of
+    240° to 360°; outside the range of the engines; with a given viscosity; and at the other levels. Level
+    supplied was not compared with finer meshes. No measured cycle with all its inputs was available.
 
     References
     ----------
@@ -187,6 +191,22 @@ class CycleHeatBalance(Oil, FedBearing):
     def starting_level(self) -> str:
         """Return the inexpensive level that models the groove, if there is one."""
         return next(level for level in ("mobility", "mobility_grooved") if level in self.ladder())
+
+    def measured_case(self) -> str:
+        """Return the kind of supply; empty outside the range of the measured engines."""
+        fed, loaded = (self.P_s >= 0.02) & (self.P_s <= 1), (self.S_max >= 0.3) & (self.S_max <= 105)
+        inside = np.all(fed & loaded & np.isnan(self.eta_given)) and sleeve_motion(self.motion)
+        return supply_kind(self.feeding) if inside else ""
+
+    @shared
+    def S_max(self) -> Array:
+        """Return the load number of the largest load at the effective viscosity."""
+        return self.F_max * self.s / self.eta_e
+
+    @shared
+    def P_s(self) -> Array:
+        """Return the supply pressure over the specific load at which the load number is 1."""
+        return self.p_s * self.psi**2 / (self.eta_e * self.Omega)
 
     @formula("s/m**2", "load scale", symbol="s")
     def s(self) -> Array:

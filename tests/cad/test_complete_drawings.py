@@ -3,6 +3,7 @@
 import io
 from dataclasses import replace
 
+import cadquery as cq
 import pytest
 from ezdxf.filemanagement import read
 from slow_models import DRAWN, quick_for
@@ -11,12 +12,13 @@ from benchmarks.drawing_completeness import faults, faults_of
 from benchmarks.drawings import SIZES, latest, sized
 from cad.catalogue import models
 from cad.drafting.content import Content, content_of
+from cad.drafting.labels import label_of
 from cad.export import derive
 from cad.file_kinds import bodies_of
-from cad.header import read_header
-from cad.model import CadModel
+from cad.header import Header, read_header
+from cad.model import CadModel, Part
 from cad.regenerate import as_text, regenerate_class
-from cad.step import read_step
+from cad.step import read_step, write_step
 
 
 def content(step: bytes) -> Content:
@@ -42,6 +44,7 @@ SHAPES: list[tuple[str, dict[str, object]]] = [
     ("thrust_washer", {"oil_grooves": 8, "pin_hole_diameter": "0 mm", "lug_width": "0 mm"}),
     ("crank_throw", {"web_shape": "rectangular", "counterweight_radius": "0 mm"}),
     ("plain_bearing", {"shells": "pair", "crush_height": "0 mm"}),
+    ("plain_bearing", {"wall_reduction": "0.05 mm", "relief_depth": "0 mm"}),
     ("flanged_bush", {"oil_hole_diameter": "0 mm"}),
     ("connecting_rod", {"pocket_width": "0 mm"}),
     ("connecting_rod", {"shank_taper": "0 deg", "bush_wall": "0 mm"}),
@@ -110,3 +113,13 @@ def test_a_sheet_of_one_part_has_only_its_own_tolerances() -> None:
     for part, shown in (("rod", "centre_distance"), ("cap", "cap_height")):
         sheet = content_of(bodies_of(f"dxf#{part}", whole), header, whole)
         assert {one.name for one in sheet.dimensions if one.limits} == {shown}
+
+
+def test_a_grid_of_holes_has_one_pitch_with_a_count_in_each_direction() -> None:
+    """ISO 129-1: equal distances are given once; the grid is centred, so nothing else locates it."""
+    grid = cq.Workplane().box(100, 80, 10).faces(">Z").workplane().rarray(20, 15, 4, 3).hole(8)
+    part = Part("plate", grid.val(), float(grid.val().Volume()))
+    plate = content(write_step([part], Header("plate", 1, {}, "")))
+    texts = sorted(label_of(one).text.replace("<>", f"{one.measure.value:g}") for one in plate.dimensions)
+    assert texts == ["10", "100", "12×8", "2×15", "3×20", "80"]
+    assert faults(plate) == []

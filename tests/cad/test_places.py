@@ -185,7 +185,11 @@ def test_limits_of_a_pin_as_long_as_its_webs_are_thick_stand_on_the_pin():
 
 
 def test_a_bolt_hole_and_an_oil_drilling_of_one_size_are_dimensioned_once_each():
-    changes = {"bolt_hole_diameter": "8 mm +0.1/0 mm", "oil_drilling_diameter": "8 mm"}
+    changes = {
+        "bolt_hole_diameter": "8 mm +0.1/0 mm",
+        "oil_drilling_diameter": "8 mm",
+        "bolt_diameter": "0 mm",
+    }
     file, paper = stated("bearing_housing", changes)
     axes = [abs(point[0]) for _, point, _, _ in file["bolt_hole_diameter"].places[0]]
     assert axes == pytest.approx([39] * len(axes))

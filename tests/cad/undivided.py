@@ -10,4 +10,5 @@ TWO_THROWS: dict[str, Any] = {
     "pin_split": "0 deg",
     "pin_length": "32 mm",
     "counterweight_radius": {"value": [70, 0, 0, 70], "unit": "mm"},
+    "thrust_main": 2,
 }

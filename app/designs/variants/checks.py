@@ -5,20 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import chain
 
-from app.designs.document import Document
+from app.designs.document import Document, StoredDocument
 from app.designs.engine.calculation import Calculation
 from app.designs.results import Outcome
 from app.designs.tolerances import not_stated_in
 from app.designs.variants.table import faulty_cells, sound
 from app.designs.variants.together import Available, row_arrays, together
-from app.plain import JsonObject
 from templates.core.errors import Fault
 
 MOST_CELLS = 50_000  # number of values in a design times its variants; each takes about 20 us
 
 
 def checked(
-    document: Document, base: Calculation, available: Available, saved: JsonObject | None = None
+    document: Document, base: Calculation, available: Available, saved: StoredDocument | None = None
 ) -> tuple[list[Outcome], list[Fault]]:
     """Return the variants of a document, calculated as far as possible, and the faults of the table.
 
@@ -32,7 +31,7 @@ def checked(
     return outcomes, [*cells.values(), *(row_faults(base) if document.variants else ()), *wrong]
 
 
-def _faults_of(outcome: Outcome, saved: JsonObject | None) -> Iterator[Fault]:
+def _faults_of(outcome: Outcome, saved: StoredDocument | None) -> Iterator[Fault]:
     """Yield the faults of a variant, among them tolerances that no file would state."""
     yield from outcome.faults
     if outcome.calculation is not None:

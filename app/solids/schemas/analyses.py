@@ -21,6 +21,7 @@ class Refinement(Answer):
     """One step of the mesh refinement until a stress converges."""
 
     elements: int
+    order: int = Field(3, description="polynomial order of the elements")
     value: float = Field(description="the largest stress on this mesh, in MPa")
 
 

@@ -125,6 +125,11 @@ def _as_difference(match: re.Match[str]) -> str:
     return difference_of(match[0])
 
 
+def in_points(text: str) -> str:
+    """Return a text with decimal points in place of decimal commas, unless a comma may group thousands."""
+    return text if _GROUPED.search(text) and not _ENGLISH.search(text) else _with_points(text)
+
+
 def scaled(typed: TypedQuantity, factor: float) -> TypedQuantity:
     """Return a multiple of a quantity, including its tolerance."""
     tolerance = typed.tolerance

@@ -218,7 +218,7 @@ EVALUATE = {"inputs": OIL_FILM}
 SOLVE = {
     "inputs": {name: value for name, value in OIL_FILM.items() if name != "bearing_width"},
     "unknown": "bearing_width",
-    "bounds": ["10 mm", "80 mm"],
+    "between": ["10 mm", "80 mm"],
     "target": {"minimum_film_thickness": "3.2449 um"},
 }
 LOADS = {"inputs": {**OIL_FILM, "radial_load": {"value": [25, 1e9], "unit": "kN"}}}

@@ -1,12 +1,15 @@
 """Literature: a shoulder fillet's stress concentration; what counts as converged."""
 
+import json
+
 import pytest
 from cadquery import Shape, Workplane
 
+from benchmarks.random_shoulders import RESULTS, compared, drawn
 from cad.analysis.analyse import AnalysisRequest, analyse
 from cad.analysis.kinds import Kind
 from cad.analysis.solid import read_solid
-from cad.analysis.stress import CONVERGED, SMALL, Peak, Peaks, searched
+from cad.analysis.stress import CONVERGED, FLOOR, SMALL, Peak, Peaks, searched
 from cad.errors import AnalysisError
 from cad.header import Header
 from cad.model import Part
@@ -64,21 +67,49 @@ def disc_of(thickness: float) -> bytes:
     return write_step((Part("disc", shape, 1.0),), Header("disc", 1, {}, "0" * 64))
 
 
-def meshes(*values: float) -> Peaks:
-    return Peaks(tuple(Peak(value, (0.0, 0.0, 0.0), 1, 1) for value in values))
+def peaks_of(*values: tuple[int, float]) -> Peaks:
+    """Peaks by order and value."""
+    return Peaks(tuple(Peak(value, (0.0, 0.0, 0.0), 1, 1, order) for order, value in values))
+
+
+FOUND = ((2, 1.3), (2, 1.0), (2, 1.0 + 0.9 * SMALL))
 
 
 @pytest.mark.parametrize(
     ("values", "converged"),
     [
-        ((1.0,), False),
-        ((1.0, 1.0), False),
-        ((1.0, 1.3, 1.3), False),
-        ((1.0, 1.3, 1.3, 1.3), True),
-        ((1.0, 1.0, 1.0 + 2 * CONVERGED), False),
-        ((1.0, 1.0 + 0.9 * SMALL, 1.0 + 0.9 * SMALL), True),
-        ((1.0, 1.0 + 1.1 * SMALL, 1.0 + 1.1 * SMALL), False),
+        ((), False),
+        (((2, 1.0), (2, 1.0), (3, 1.0)), False),
+        (FOUND, False),
+        ((*FOUND, (3, FOUND[-1][1] * (1 + 0.9 * CONVERGED))), True),
+        ((*FOUND, (3, FOUND[-1][1] * (1 + 1.1 * CONVERGED))), False),
+        (((2, 1.3), (2, 1.0), (2, 1.0 + 1.2 * SMALL), (3, 1.0 + 1.2 * SMALL)), False),
+        ((*FOUND, (3, 1.2), (2, 1.15), (3, 1.2 * (1 + 0.9 * CONVERGED))), True),
+    ],
+    ids=[
+        "nothing",
+        "two meshes",
+        "one order",
+        "order small",
+        "order matters",
+        "mesh matters",
+        "confirmed twice",
     ],
 )
-def test_one_small_change_is_no_convergence(values: tuple[float, ...], converged: bool) -> None:
-    assert meshes(*values).converged == converged
+def test_one_small_change_is_no_convergence(values: tuple[tuple[int, float], ...], converged: bool) -> None:
+    assert peaks_of(*values).converged == converged
+
+
+def test_the_stated_error_is_the_smaller_change_and_a_constant() -> None:
+    assert peaks_of(*FOUND, (3, 1.1)).error == pytest.approx(abs(FOUND[-1][1] / 1.1 - 1) + FLOOR)
+    assert peaks_of(*FOUND, (3, 1.2), (2, 1.1), (3, 1.212)).error == pytest.approx(0.012 / 1.212 + FLOOR)
+
+
+@pytest.mark.slow
+def test_property_the_stated_error_holds_for_random_shoulders() -> None:
+    """The ensemble is stored with its seed; two of its shafts, one for each load, are computed again."""
+    kept = json.loads(RESULTS.read_text())
+    for number, row in enumerate(kept["shafts"][:2]):
+        again = compared(drawn(kept["seed"], number), row["load"])
+        assert again["difference"] == pytest.approx(row["difference"], abs=1e-4)
+        assert abs(again["difference"]) <= again["stated error"]

@@ -13,7 +13,7 @@ from templates.core.language.levels import Accuracy, accuracy, next_levels
 from templates.core.language.spec import Text
 from templates.core.language.template import Template, formula, given, profile, shared
 from templates.door import built_in
-from templates.oil_film.cycle_heat_balance_v1 import CycleHeatBalance
+from templates.oil_film.elastic_film_v1 import ElasticFilm
 from templates.oil_film.oil_film_v2 import OilFilm
 
 ROOT = Path(__file__).parents[3]
@@ -147,7 +147,7 @@ class TestNextLevels:
         table()
         assert next_levels(rung("rough", length="200 m"), "size") == ()
         assert next_levels(rung("rough"), "warmth") == ()
-        assert next_levels(CycleHeatBalance.from_quantities(CycleHeatBalance.example), "power_loss") == ()
+        assert next_levels(ElasticFilm.from_quantities(ElasticFilm.example), "minimum_film_thickness") == ()
 
     def test_property_the_film_climbs_to_the_map_and_no_farther(self):
         """`mass_conserving` follows another convention, and errs more."""
@@ -177,7 +177,7 @@ class TestConditions:
 
 class TestReachable:
     def test_property_nothing_beyond_a_default_level_without_errors(self):
-        assert reachable(CycleHeatBalance, CycleHeatBalance.levels) == ("mobility_short", "mobility")
+        assert reachable(ElasticFilm, ElasticFilm.levels) == ("rigid",)
         assert reachable(OilFilm, OilFilm.levels) == OilFilm.levels
         assert reachable(OilFilm, ("mass_conserving",)) == ("mass_conserving",)
 
