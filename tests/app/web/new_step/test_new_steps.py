@@ -3,6 +3,7 @@
 import re
 
 import pytest
+from axe_playwright_python.sync_playwright import Axe
 from browsing import from_example, settled
 from playwright.sync_api import expect
 from serving import API
@@ -94,3 +95,40 @@ def test_a_refused_limit_of_a_new_step_keeps_what_was_typed(http):
     assert re.search(r'name="oil_film@limits.permissible_film"[^>]* value="2 s"', refused.text)
     assert re.search(r'id="oil_film@limits-permissible_film-error"><bdi>[^<]*measures', refused.text)
     assert '<details class="more" open><summary>Limits of the criteria (7)' in refused.text
+
+
+@pytest.mark.slow
+def test_a_new_step_has_the_dialogs_of_a_design_and_counts_its_faults_while_typing(watched, http):
+    """Names of the other steps are completed; a fault goes when its value is mended."""
+    place = from_example(http, "oil_film/1")
+    page = watched.page
+    watched.open(f"{place}/steps/new?add=template&template=journal_friction/1&name=friction")
+    speed, state = page.locator("[name='friction.speed']"), page.locator("[data-new-step] [data-state]")
+    speed.fill("25 kg")
+    beside = page.locator("#friction-speed-error")
+    expect(beside).to_contain_text("kg")
+    expect(state).to_contain_text("1 wrong")
+    speed.fill("= oil_film.spee")
+    expect(page.locator("#completions")).to_contain_text("oil_film.speed")
+    page.keyboard.press("Enter")
+    expect(speed).to_have_value("= oil_film.speed")
+    expect(beside).to_be_hidden()
+    expect(state).not_to_contain_text("wrong")
+    expect(state).to_contain_text("missing")
+    page.locator("[data-pick-for='friction.speed']").click()
+    expect(page.locator("[data-picker]")).to_be_visible()
+    page.keyboard.press("Escape")
+
+
+@pytest.mark.slow
+def test_a_new_design_takes_lists_as_people_type_them(watched):
+    page = watched.page
+    watched.open("/designs/new?design_name=four&template=engine/1")
+    page.locator("[name='engine.firing_order']").evaluate(
+        "(field) => { field.value = '1-3-4-2'; field.dispatchEvent(new Event('input', { bubbles: true })); }"
+    )
+    state = page.locator("[data-new-step] [data-state]")
+    expect(state).to_contain_text("missing")
+    expect(page.locator("#engine-firing_order-error")).to_be_hidden()
+    expect(page.locator("[data-list='engine.firing_order'] [data-paste-table]")).to_be_attached()
+    assert Axe().run(page, options={"resultTypes": ["violations"]}).response["violations"] == []
