@@ -41,7 +41,8 @@ def test_a_design_begins_empty_and_its_mapping_is_proposed(watched, http):
     expect(page.locator(".page-head")).to_contain_text("revision 2")
     parameters = settled(http, place)["models"]["model"]["parameters"]
     assert parameters == {"inner_diameter": "= oil_film.bearing_diameter"}
-    assert watched.faults() == []
+    # What is half typed is refused (422), and the browser reports that.
+    assert [fault for fault in watched.faults() if "422" not in str(fault)] == []
 
 
 def test_a_further_step_begins_empty_and_says_what_is_missing(http):
@@ -85,7 +86,7 @@ def test_a_new_step_takes_limits_and_rows_of_the_library(watched, http):
     assert design["steps"]["oil_film"]["limits"] == limits
     expect(page.locator("select[name='oil_film@limits.bearing_material']")).to_have_value("tin_babbitt_b23_2")
     assert '<option value="0.25 um">N4, Ra 0.2 um</option>' in page.content()
-    assert watched.faults() == []
+    assert [fault for fault in watched.faults() if "422" not in str(fault)] == []  # half typed
 
 
 def test_a_refused_limit_of_a_new_step_keeps_what_was_typed(http):
