@@ -213,7 +213,7 @@ class CadModel(TolerancedTemplate):
         Raises
         ------
         InvalidInputs
-            Naming all wrong inputs at once.
+            If inputs are wrong; the error lists all of them.
         """
         read, wrong = dict(raw), []
         for name, value in raw.items():

@@ -28,7 +28,7 @@ def evaluated(cls: type[Template], body: EvaluateIn) -> Evaluation:
     Raises
     ------
     InvalidInputs
-        With all wrong inputs.
+        If inputs are wrong; the error lists all of them.
     TooManyValues
         If the answer would be too large.
     """
@@ -53,7 +53,7 @@ def check_evaluate(cls: type[Template], body: EvaluateIn) -> None:
     Raises
     ------
     InvalidInputs
-        With all wrong inputs.
+        If inputs are wrong; the error lists all of them.
     TooManyValues
         If the answer would be too large.
     """
@@ -69,7 +69,7 @@ def check_solve(cls: type[Template], body: SolveIn) -> None:
     Raises
     ------
     InvalidInputs
-        With all wrong inputs.
+        If inputs are wrong; the error lists all of them.
     """
     read_question(
         cls,
@@ -100,9 +100,9 @@ def run_solve(cls: type[Template], body: SolveIn) -> JsonObject:
     Raises
     ------
     InvalidInputs
-        With all wrong inputs.
+        If inputs are wrong; the error lists all of them.
     Unreachable
-        With the reachable range.
+        If no value of the input gives the output; the error states the reachable range.
     """
     solution = solve(
         cls,

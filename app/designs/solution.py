@@ -85,7 +85,7 @@ def solved(task: DesignTask, revision: int, body: str) -> DesignSolution:
     Raises
     ------
     InvalidInputs
-        With the faults of the request or the design.
+        If the request or the design has faults; the error lists them.
     Unreachable
         If no value between the bounds gives the target.
     """

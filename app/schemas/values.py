@@ -37,7 +37,7 @@ Limits = Annotated[
     dict[str, Given],
     Field(
         max_length=200,
-        description="limits of criteria that are no inputs of the calculation, by name, or library rows: "
+        description="limits of criteria that are not inputs of the calculation, by name, or library rows: "
         '`{"permissible_pressure": "35 MPa"}`, `{"bearing_material": "…"}`',
     ),
     at_most(200),

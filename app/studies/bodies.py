@@ -124,7 +124,7 @@ def study_of(raw: JsonObject) -> StudyIn:
     Raises
     ------
     InvalidBody
-        With all faults.
+        If there are faults; the error lists all of them.
     """
     try:
         return StudyIn.model_validate(raw)

@@ -45,7 +45,7 @@ def asked_of(body: StudyIn, varied: Sequence[str], engine: DesignEngine) -> Stud
     Raises
     ------
     InvalidInputs
-        With all faults.
+        If there are faults; the error lists all of them.
     """
     _refuse(list(_contradictions(body, varied)))
     space = Space(tuple(_variables(body, varied, engine)))

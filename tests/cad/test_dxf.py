@@ -41,6 +41,7 @@ OF_NONE = {
     "flange_thickness",
     "free_spread",
     "oil_groove_angle",
+    "reduction_height",
 }
 """Sizes of features that a bare shell has not; its groove goes from joint to joint."""
 QUICK_MODELS = DRAWN

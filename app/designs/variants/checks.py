@@ -21,7 +21,7 @@ def checked(
 ) -> tuple[list[Outcome], list[Fault]]:
     """Return the variants of a document, calculated as far as possible, and the faults of the table.
 
-    A tolerance that a `saved` document has already is no fault.
+    A tolerance that a `saved` document already has is not a fault.
     """
     if faults := list(too_many_cells(document)):
         return [], faults

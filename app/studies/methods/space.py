@@ -22,8 +22,8 @@ class Interval:
     Raises
     ------
     InvalidInputs
-        With code `not_ascending`, if the bounds are not finite or not in order; with code `spacing`, if log
-        spacing has a bound ≤ 0.
+        If the bounds are not finite or not in order (code `not_ascending`), or if log spacing has a bound ≤ 0
+        (code `spacing`).
     """
 
     name: str
@@ -69,7 +69,7 @@ class Values:
     Raises
     ------
     InvalidInputs
-        With code `values`, if the list is empty or a value is not finite.
+        If the list is empty or a value is not finite; the code is `values`.
     """
 
     name: str

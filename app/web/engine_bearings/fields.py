@@ -55,7 +55,7 @@ def quantity_text(text: str, unit: str) -> str:
     Raises
     ------
     FaultyText
-        With a remedy, if the text is no quantity of this unit.
+        If the text is not a quantity of this unit; the error states a remedy.
     """
     plain = text.strip()
     if is_relation(plain):

@@ -60,7 +60,7 @@ def diagram_of(body: bytes) -> Diagram:
     Raises
     ------
     FaultyText
-        With the reason and the remedy, if it is no full four-stroke cycle of one cylinder.
+        If it is not a full four-stroke cycle of one cylinder; the error states the reason and the remedy.
     """
     try:
         read = curves_of(body)

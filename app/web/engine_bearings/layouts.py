@@ -68,7 +68,7 @@ class Layout:
     def banks(self) -> list[float]:
         """Return the angle of each cylinder from the middle plane [deg], positive with the rotation."""
         half = self.bank / 2 if self.is_odd_first else -self.bank / 2
-        return [half if number % 2 else -half for number in range(1, self.cylinders + 1)]
+        return [half if number % 2 else 0.0 - half for number in range(1, self.cylinders + 1)]
 
 
 LAYOUTS: dict[str, Layout] = {

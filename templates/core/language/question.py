@@ -31,7 +31,7 @@ def read_question(
     Raises
     ------
     InvalidInputs
-        With everything that is wrong with the question at once.
+        If the question has faults; the error lists all of them.
     """
     *_, faults = read_options(cls, **names)
     declared, formula = _unknown(cls, unknown, faults), None

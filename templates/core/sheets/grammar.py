@@ -74,7 +74,7 @@ def parsed(chunk: Chunk) -> ParsedStatement:
     Raises
     ------
     Refusal
-        With code `syntax` and the place, or `too_large`.
+        The code is `syntax`, with the place, or `too_large`.
     """
     try:
         tree, words = _tree(chunk.text)

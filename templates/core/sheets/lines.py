@@ -64,7 +64,7 @@ def _kind(line: str) -> str:
 
 def _faults_of_text(text: str) -> Iterator[SheetFault]:
     if len(text) > MOST_BYTES or len(text.encode("utf-8", "replace")) > MOST_BYTES:
-        message = f"a worksheet has at most {MOST_BYTES // 1024} KiB"
+        message = f"a worksheet may be at most {MOST_BYTES // 1024} KiB in size"
         yield SheetFault(1, 1, "too_large", message, remedy="make two worksheets of it")
         return
     for number, line in enumerate(text.split("\n"), 1):

@@ -53,7 +53,7 @@ class Names:
         Raises
         ------
         FaultyText
-            With code `unknown_name`.
+            The code is `unknown_name`.
         FollowsFromFault
             If the statement of the name has a fault.
         """
@@ -84,7 +84,7 @@ class Names:
         Raises
         ------
         FaultyText
-            With code `too_large`, if there are too many.
+            If there are too many; the code is `too_large`.
         """
         self.fuel -= operations
         if self.fuel < 0:
@@ -97,7 +97,7 @@ class Names:
         Raises
         ------
         FaultyText
-            With code `name`.
+            The code is `name`.
         """
         if name in self.sorts or name in self.functions:
             raise FaultyText("name", f"{name[:LONGEST_NAME]} is already declared above")
@@ -121,6 +121,6 @@ def sort_of(text: str, name: str | None = None) -> Sort:
     Raises
     ------
     FaultyText
-        With code `unknown_unit`.
+        The code is `unknown_unit`.
     """
     return Sort(kind_of(text, name))

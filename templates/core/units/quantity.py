@@ -79,7 +79,7 @@ def read(raw: Any, declared: str) -> TypedQuantity:
     Raises
     ------
     FaultyText
-        With a code and a remedy.
+        If the value is not a valid quantity; the error states a code and a remedy.
     """
     match raw:
         case str():
@@ -105,7 +105,7 @@ def read_beside(raw: Any, declared: str) -> TypedQuantity:
     Raises
     ------
     FaultyText
-        With a code and a remedy.
+        If the value is not a valid quantity; the error states a code and a remedy.
     """
     if not unit(declared).difference:
         return read(raw, declared)
@@ -152,7 +152,7 @@ def read_any(raw: Any) -> TypedQuantity:
     Raises
     ------
     FaultyText
-        With a code and a remedy.
+        If the value is not a valid quantity; the error states a code and a remedy.
     """
     return read(raw, unit(_own_unit(raw)).text)
 
@@ -212,7 +212,7 @@ def _refuse_decimal_comma(text: str, declared: str) -> None:
     Raises
     ------
     FaultyText
-        With the same text in decimal points.
+        If the text has decimal commas; the error shows it with decimal points.
     """
     if (plain := _with_points(text)) == text or not (_parted(plain) or listed(plain)):
         return

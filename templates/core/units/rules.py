@@ -88,7 +88,9 @@ def _joined(sign: str, one: Kind, other: Kind, nodes: tuple[Any, ...]) -> Kind:
     turned = one.turned | other.turned
     if is_rate(one.base) and turned and len(counts) == 1:
         remedy = next(filter(None, map(_counted, nodes)), "multiply 1/s by 1 turn or by 1 rad")
-        raise FaultyText("unit_mismatch", f"{detail}: {' and '.join(sorted(turned))} counts turns; {remedy}")
+        raise FaultyText(
+            "unit_mismatch", f"{detail}: {' and '.join(sorted(turned))} is a number of turns; {remedy}"
+        )
     first = counts[0] if counts else one
     return Kind(first.base, first.cycles, turned=turned)
 
@@ -153,7 +155,7 @@ def as_compared(sign: str, other: Kind, node: Any, beside: Any) -> str:
     Raises
     ------
     FaultyText
-        With code `unit_mismatch`, if the other side is a value in K that may be either.
+        If the other side is a value in K that may be either; the code is `unit_mismatch`.
     """
     if not (text := literal(node)):
         return ""

@@ -54,7 +54,7 @@ def applied(operation: Operation, parts: Sequence[Part]) -> Part:
     Raises
     ------
     FaultyText
-        With code `unit_mismatch`, `no_truth`, `axis_mismatch`, `index` or `too_large`.
+        The code is `unit_mismatch`, `no_truth`, `axis_mismatch`, `index` or `too_large`.
     """
     sorts = [sort for _, sort in parts]
     axis, meeting = _axis(operation, sorts)
@@ -68,7 +68,7 @@ def sorted_by(operation: Operation, parts: Sequence[Part], axis: str = "") -> So
     Raises
     ------
     FaultyText
-        With code `unit_mismatch`, `no_truth`, `index` or `too_large`.
+        The code is `unit_mismatch`, `no_truth`, `index` or `too_large`.
     """
     nodes, sorts = tuple(node for node, _ in parts), [sort for _, sort in parts]
     truth = _truth(operation, sorts)

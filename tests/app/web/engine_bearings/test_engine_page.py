@@ -4,7 +4,7 @@ import re
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from browsing import CHROMIUM, settled
+from browsing import CHROMIUM
 from engine_fields import FOUR, gas_table
 from playwright.sync_api import expect
 from serving import API
@@ -128,15 +128,14 @@ def test_nine_bearings_from_the_front_page_in_at_most_twelve_fields(watched, htt
         if name != "layout":
             page.locator(f"[name={name}]").fill(text)
     page.get_by_label("Cycle").select_option("diagram")
-    file = {"name": "gas.csv", "mimeType": "text/csv", "buffer": gas_table(peak_at=372.0)}
+    file = {"name": "gas.csv", "mimeType": "text/csv", "buffer": gas_table()}
     page.locator("[name=diagram]").set_input_files(file)
-    expect(page.get_by_role("status").filter(has_text="Read:")).to_contain_text("12° after dead centre")
+    expect(page.get_by_role("status").filter(has_text="Read:")).to_contain_text("10° after dead centre")
     page.get_by_role("button", name="Calculate the bearings").click()
     page.wait_for_url(re.compile("/designs/"), timeout=300_000)
     place = page.url.removeprefix(watched.url)
-    assert settled(http, place)["state"] == "current"
+    expect(page.locator("[data-design-state]")).to_have_text("current", timeout=900_000)
     watched.open(place)
-    expect(page.locator(".results-table tbody tr")).to_have_count(10)
     rows = http.get(f"{API}{place}/variants").json()["table"]["rows"]
     assert sorted(row["name"] for row in rows if row["name"] in NINE) == NINE
     for name in NINE:
@@ -144,5 +143,5 @@ def test_nine_bearings_from_the_front_page_in_at_most_twelve_fields(watched, htt
         expect(row.locator(".mark")).to_have_text(re.compile("^(met|not met)"))
     expect(page.locator(".assumed-values summary")).to_contain_text("values are assumed, not given")
     report = http.get(f"{API}{place}/variants/report.html").text
-    assert "Assumed, not given: firing order" in report
+    assert re.search("Assumed, not given: .*firing order", report)
     assert watched.faults() == []
