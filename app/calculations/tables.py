@@ -288,7 +288,7 @@ def _trimmed(cells: list[str], least: int) -> list[str]:
 
 def _cells(row: int, line: str, separator: str) -> list[str]:
     if len(line) > LONGEST_LINE:
-        raise _wrong(f"row {row}", "too_long", f"a row has at most {LONGEST_LINE} characters")
+        raise _wrong(f"row {row}", "too_long", f"a row may have at most {LONGEST_LINE} characters")
     if separator == " ":
         words = line.split()
         return words if all(map(_is_number, words)) else _ALIGNED.split(line.strip())

@@ -70,7 +70,7 @@ def words_of(statement: ParsedStatement, words: lark.Token) -> str:
     """
     text = " ".join(words[1:-1].split())
     if len(text) > LONGEST_WORDS:
-        message = f"words have at most {LONGEST_WORDS} characters"
+        message = f"words may have at most {LONGEST_WORDS} characters"
         raise statement.refuse(
             "too_large", message, words, "move the rest to a line of prose that begins with `>`"
         )

@@ -88,7 +88,7 @@ class Names:
         """
         self.fuel -= operations
         if self.fuel < 0:
-            detail = f"a worksheet must have at most {FUEL} operations, including those in its functions"
+            detail = f"a worksheet may have at most {FUEL} operations, including those in its functions"
             raise FaultyText("too_large", detail)
 
     def check_new(self, name: str) -> None:
@@ -103,7 +103,7 @@ class Names:
             raise FaultyText("name", f"{name[:LONGEST_NAME]} is already declared above")
         if len(name) > LONGEST_NAME or "." in name:
             raise FaultyText(
-                "name", f"a name must have at most {LONGEST_NAME} letters, digits and _, and no dot"
+                "name", f"a name may have at most {LONGEST_NAME} letters, digits and _, and no dot"
             )
         if (
             name in _WORDS

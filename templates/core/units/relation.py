@@ -178,7 +178,7 @@ def parse(text: str) -> Relation:
         The code is `syntax`, with the place, or `unknown_unit` or `unknown_function`.
     """
     if len(text) > MAX_LENGTH:
-        raise FaultyText("syntax", f"a relation must have at most {MAX_LENGTH} characters")
+        raise FaultyText("syntax", f"a relation may have at most {MAX_LENGTH} characters")
     body = text.strip().removeprefix("=")
     try:
         parsed = _parser.parse(body)
@@ -187,7 +187,7 @@ def parse(text: str) -> Relation:
     parts = sum(1 for _ in parsed.iter_subtrees())
     if parts > MAX_PARTS or height(parsed) > MAX_DEPTH:
         raise FaultyText(
-            "syntax", f"a relation must have at most {MAX_PARTS} parts, nested at most {MAX_DEPTH} deep"
+            "syntax", f"a relation may have at most {MAX_PARTS} parts, nested at most {MAX_DEPTH} deep"
         )
     tree, rounding = _rounded(parsed)
     nodes = list(nodes_of(tree))

@@ -77,7 +77,7 @@ def sorted_by(operation: Operation, parts: Sequence[Part], axis: str = "") -> So
         raise FaultyText("too_large", f"an expression must be at most {MAX_NODES_DEEP} operations deep")
     size = 1 + sum(sort.size for sort in sorts)
     if size > MAX_NODES:
-        detail = f"an expression must have at most {MAX_NODES} operations, including those in its functions"
+        detail = f"an expression may have at most {MAX_NODES} operations, including those in its functions"
         raise FaultyText("too_large", detail)
     kind = operation.kind(operation, [sort.kind for sort in sorts], nodes)
     return Sort(kind, truth, axis, depth=depth, size=size)
