@@ -1,7 +1,7 @@
 """The main sizes of a throw, and the positions of its pin and fillets.
 
-This module does not import the geometry kernel: finite elements load their own, and one process must not load
-both.
+This module does not import the geometry kernel: the finite-element code loads its own kernel, and one process
+must not load both.
 """
 
 from __future__ import annotations

@@ -213,7 +213,7 @@ class CadModel(TolerancedTemplate):
         Raises
         ------
         InvalidInputs
-            Naming all wrong inputs at once.
+            If inputs are wrong; the error lists all of them.
         """
         read, wrong = dict(raw), []
         for name, value in raw.items():
@@ -232,9 +232,7 @@ def _no_list(name: str, text: str, unit: str) -> Fault:
     """Return the fault of a text that begins like a list but is not one, with an example of a list."""
     form = "[1.5, 2]" if unit == "1" else f"[1.5, 2] {unit}"
     if len(text) > LONGEST_TEXT:
-        detail = (
-            f"a list as text has at most {LONGEST_TEXT} characters; give an object with `value` and `unit`"
-        )
+        detail = f"the text has over {LONGEST_TEXT} characters; give an object with `value` and `unit`"
         return Fault(name, "too_long", detail)
     return Fault(name, "not_a_quantity", f'{excerpt(text)} is not a list; write it as "{form}"')
 

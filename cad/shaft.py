@@ -1,7 +1,7 @@
 """The data of a solid that an analysis needs besides its shape: material, supports and loads.
 
-This module does not import the geometry kernel: finite elements load their own, and one process must not load
-both.
+This module does not import the geometry kernel: the finite-element code loads its own kernel, and one process
+must not load both.
 """
 
 from __future__ import annotations

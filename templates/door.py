@@ -1,4 +1,4 @@
-"""Templates in Python: quantities in, quantities out, for notebooks and scripts.
+"""Call templates from Python, in notebooks and scripts, with quantities as inputs and results.
 
     from templates import get
 
@@ -6,8 +6,8 @@
     film.minimum_film_thickness         # 2.657 µm, a Pint quantity
     film.level, film.error["minimum_film_thickness"], film.warnings
 
-It works on the built-in templates in this process, and needs no service. An input is a text, a Pint quantity
-of any registry, an object `{"value": 25, "unit": "kN"}`, or a bare number or array where the unit is 1.
+The built-in templates run in this process; no service is needed. An input is a string, a Pint quantity of any
+registry, an object `{"value": 25, "unit": "kN"}`, or a bare number or array where the unit is 1.
 Array inputs give array results.
 """
 
@@ -119,7 +119,8 @@ class Version:
         Raises
         ------
         InvalidInputs
-            With every wrong input and what would be right; also if `outputs` is given without a tolerance.
+            If inputs are wrong, or `outputs` is given without a tolerance. The error names each wrong input
+            and states what would be right.
         """
         raw = {name: _written(value) for name, value in inputs.items()}
         if tolerance is None:

@@ -138,8 +138,8 @@ def test_the_rest_reference_lists_every_call_and_every_schema():
     document = rest.interface()
     page = rest.page(document)
     for path, item in document["paths"].items():
-        for method in item:
-            assert f"### {method.upper()} `{path}`" in page
+        for method, operation in item.items():
+            assert f"### {operation['summary']}\n\n`{method.upper()} {path}`\n" in page
     anchors = set(re.findall(r"\{: #(schema-\S+) \}", page))
     assert anchors == {f"schema-{name.lower()}" for name in document["components"]["schemas"]}
     assert set(re.findall(r'href="#(schema-[^"]+)"', page)) <= anchors

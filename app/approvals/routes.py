@@ -15,7 +15,7 @@ from app.http.pages import Cursor, Limit, page
 from app.http.strict_requests import PreconditionRequired, StrictRoute
 from app.schemas.problems import refusals
 
-router = APIRouter(prefix="/api/v1/designs/{id}", tags=["approval"], route_class=StrictRoute)
+router = APIRouter(prefix="/api/v1/designs/{id}", tags=["approvals"], route_class=StrictRoute)
 
 CommentId = Annotated[str, Path(max_length=64)]
 SEEN = "`to_sign` of the approvals that were read, in quotes"

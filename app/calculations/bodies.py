@@ -11,7 +11,7 @@ from pydantic.config import JsonDict
 from app.plain import JsonObject
 from app.pool.cost import points
 from app.schemas.bounds import Bounded, at_most
-from app.schemas.values import Given, Limits
+from app.schemas.values import Between, Given, Limits
 
 Text = Annotated[str, StringConstraints(max_length=100)]
 MOST_NAMES = 2000  # largest number of names in one request
@@ -79,7 +79,7 @@ class SolveIn(CalculationRequest):
                 {
                     "inputs": {name: value for name, value in OIL_FILM.items() if name != "bearing_width"},
                     "unknown": "bearing_width",
-                    "bounds": ["10 mm", "80 mm"],
+                    "between": ["10 mm", "80 mm"],
                     "target": {"minimum_film_thickness": "3.2449 um"},
                 }
             ]
@@ -87,10 +87,7 @@ class SolveIn(CalculationRequest):
     )
 
     unknown: Text = Field(description="the input to find")
-    bounds: list[Given] = Field(
-        description="the lowest and the highest value to try",
-        json_schema_extra={"minItems": 2, "maxItems": 2},
-    )
+    between: Between
     target: dict[str, Given] = Field(
         max_length=200,
         description="one output and its wanted value",

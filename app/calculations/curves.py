@@ -43,7 +43,7 @@ def curves_of(body: bytes) -> ReadCurves:
     Raises
     ------
     InvalidInputs
-        With every wrong line, up to twenty.
+        If lines are wrong; the error lists up to twenty of them.
     """
     try:
         table = as_cycle(_with_units(_table(file_of(body))))

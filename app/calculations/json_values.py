@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.plain import JsonObject
+from app.schemas.slopes import slope_in
 from templates.core.catalogue.digests import digest
 from templates.core.criteria.judgement import Judgement, Place, sentence
 from templates.core.criteria.summary import summarised
@@ -229,8 +230,8 @@ def solution(result: Solution) -> JsonObject:
     return {
         "unknown": quantity(result.unknown, result.unit),
         "warnings": warnings(result.warnings),
-        "roots": [_root(root, result.unit) for root in result.roots],
-        "touching": [_root(root, result.unit) for root in result.touching],
+        "roots": [_root(root, result) for root in result.roots],
+        "touching": [_root(root, result) for root in result.touching],
         "jumps": [_jump(jump, result) for jump in result.jumps],
         "curve": _curve(result.curve, result),
         "finer": [_curve(curve, result) for curve in result.finer],
@@ -238,9 +239,12 @@ def solution(result: Solution) -> JsonObject:
     }
 
 
-def _root(root: Root, unit: str) -> dict[str, object]:
-    about = {"slope": root.slope, "level": root.level, "error": root.error, "confirmed": root.confirmed}
-    return {**quantity(root.value, unit), **about}
+def _root(root: Root, result: Solution) -> dict[str, object]:
+    about = {"level": root.level, "error": root.error, "confirmed": root.confirmed}
+    slope = None if root.slope is None else slope_in(result.target_unit, result.unit, root.slope)
+    change = {"crossing": root.crossing, "slope": slope and slope.plain()}
+    reason = {} if root.no_slope is None else {"reason": root.no_slope}
+    return {**quantity(root.value, result.unit), **change, **reason, **about}
 
 
 def _jump(jump: Jump, result: Solution) -> dict[str, object]:

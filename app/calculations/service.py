@@ -28,7 +28,7 @@ def evaluated(cls: type[Template], body: EvaluateIn) -> Evaluation:
     Raises
     ------
     InvalidInputs
-        With all wrong inputs.
+        If inputs are wrong; the error lists all of them.
     TooManyValues
         If the answer would be too large.
     """
@@ -53,7 +53,7 @@ def check_evaluate(cls: type[Template], body: EvaluateIn) -> None:
     Raises
     ------
     InvalidInputs
-        With all wrong inputs.
+        If inputs are wrong; the error lists all of them.
     TooManyValues
         If the answer would be too large.
     """
@@ -69,13 +69,13 @@ def check_solve(cls: type[Template], body: SolveIn) -> None:
     Raises
     ------
     InvalidInputs
-        With all wrong inputs.
+        If inputs are wrong; the error lists all of them.
     """
     read_question(
         cls,
         body.inputs,
         body.unknown,
-        body.bounds,
+        body.between,
         body.target,
         outputs=body.outputs,
         units=body.units,
@@ -100,15 +100,15 @@ def run_solve(cls: type[Template], body: SolveIn) -> JsonObject:
     Raises
     ------
     InvalidInputs
-        With all wrong inputs.
+        If inputs are wrong; the error lists all of them.
     Unreachable
-        With the reachable range.
+        If no value of the input gives the output; the error states the reachable range.
     """
     solution = solve(
         cls,
         body.inputs,
         body.unknown,
-        body.bounds,
+        body.between,
         body.target,
         outputs=body.outputs,
         units=body.units,

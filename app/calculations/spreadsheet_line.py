@@ -29,7 +29,7 @@ def csv_of(
     Raises
     ------
     InvalidInputs
-        With all wrong inputs, and with code `shape` for an output that is a curve.
+        If inputs are wrong, or an output is a curve (code `shape`); the error lists all faults.
     """
     result = evaluation(
         evaluate(loaded(source), inputs, outputs=outputs, level=level, tolerance=tolerance, judge=False)

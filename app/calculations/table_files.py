@@ -39,7 +39,7 @@ def file_text(content: bytes, most_bytes: int, most_unpacked: int, most_rows: in
         If it is too large, damaged, or of another kind.
     """
     if len(content) > most_bytes:
-        raise _wrong("too_long", f"a table has at most {most_bytes / 1e6:g} MB; send fewer rows")
+        raise _wrong("too_long", f"a table may be at most {most_bytes / 1e6:g} MB in size; send fewer rows")
     if content.startswith(ZIP):
         return FileText(sheet_text(content, most_unpacked, most_rows), is_sheet=True)
     if content.startswith(OLD_EXCEL):

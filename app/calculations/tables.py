@@ -150,7 +150,7 @@ def read_table(
     Raises
     ------
     InvalidInputs
-        With every wrong cell.
+        If cells are wrong; the error lists them.
     """
     return table_of(
         text,
@@ -183,13 +183,13 @@ def table_of(
     Raises
     ------
     InvalidInputs
-        With every wrong cell by its row and column, up to `most_faults`; the last fault states how
-        many more there are.
+        If cells are wrong. The error names up to `most_faults` of them by row and column; its last fault
+        states how many more there are.
     """
     lines, is_comma, assumed = _lines(text, most_rows, most_characters)
     width = len(lines[0].cells)
     if width > MOST_COLUMNS:
-        raise _wrong("table", "too_many_columns", f"a table has at most {MOST_COLUMNS} columns")
+        raise _wrong("table", "too_many_columns", f"a table may have at most {MOST_COLUMNS} columns")
     faults = _Faults(most_faults)
     names, units, rest = _headings(lines, faults)
     for name, one in zip(names, units, strict=True):
@@ -221,7 +221,7 @@ def _column(name: str, scale: HeadingUnit, values: tuple[float, ...]) -> TableCo
 def _lines(text: str, most_rows: int, most_characters: int) -> tuple[list[_Line], bool, list[str]]:
     """Return the lines of the table, whether a comma separates columns, and the assumptions made."""
     if len(text) > most_characters:
-        message = f"a table has at most {most_characters} characters, this one {len(text)}; take fewer rows"
+        message = f"the table has {len(text)} characters; send fewer rows, with at most {most_characters}"
         raise _wrong("table", "too_long", message)
     rows = re.split(r"\r\n|\r|\n", text.removeprefix("\ufeff"))
     numbered = (
@@ -233,7 +233,7 @@ def _lines(text: str, most_rows: int, most_characters: int) -> tuple[list[_Line]
     if not filled:
         raise _wrong("table", "empty", "the table is empty; paste rows of numbers below their column names")
     if len(filled) > most_rows + 2:
-        raise _wrong("table", "too_many_rows", f"a table has at most {most_rows} rows; take fewer")
+        raise _wrong("table", "too_many_rows", f"a table may have at most {most_rows} rows; send fewer")
     separator, first = _layout(filled)
     assumed = [f"{first} line{'s' if first > 1 else ''} above the headings left out"] if first else []
     if separator == " ":
@@ -288,7 +288,7 @@ def _trimmed(cells: list[str], least: int) -> list[str]:
 
 def _cells(row: int, line: str, separator: str) -> list[str]:
     if len(line) > LONGEST_LINE:
-        raise _wrong(f"row {row}", "too_long", f"a row has at most {LONGEST_LINE} characters")
+        raise _wrong(f"row {row}", "too_long", f"a row may have at most {LONGEST_LINE} characters")
     if separator == " ":
         words = line.split()
         return words if all(map(_is_number, words)) else _ALIGNED.split(line.strip())
@@ -313,7 +313,7 @@ def _headings(lines: Sequence[_Line], faults: _Faults) -> tuple[list[str], list[
         return names, units, lines[1:]
     texts = [_bare(cell) for cell in lines[1].cells]
     if all(one is not None and one.text for one in units) and not all(is_unit(text) for text in texts):
-        return names, units, lines[1:]  # the headings have their units: these words are no numbers
+        return names, units, lines[1:]  # the headings have their units: these words are not numbers
     below = _read_units(lines[1], names, texts, faults)
     return names, _agreed(lines[1], names, units, below, faults), lines[2:]
 

@@ -45,7 +45,7 @@ class CheckInProcess:
             If the service is stopping.
         """
         if len(content) > MOST_BYTES:
-            what = f"the file has more than {MOST_BYTES // 2**20} MiB"
+            what = f"the file is larger than {MOST_BYTES // 2**20} MiB"
             return [FileFault("too_large", what, "keep tables in a file beside it")]
         try:
             names_kernel = any(name in content for name in KERNEL)
@@ -56,7 +56,7 @@ class CheckInProcess:
             remedy = "let the import only declare, or allow more by CRANKWRIGHT_TEMPLATE_SECONDS"
             return [FileFault("too_long", what, remedy)]
         except MemoryExceeded as error:
-            what = f"to load and check it takes more than {error.megabytes} MiB"
+            what = f"loading and checking it needs more than {error.megabytes} MiB of memory"
             return [FileFault("memory", what, "give a smaller example")]
         except JobCancelled:
             raise

@@ -42,7 +42,9 @@ def _curve(name: str, text: str) -> Raw:
         raise InvalidInputs(fault.within(path or text) for fault in error.faults) from None
     curves = read.curves
     if (column or name) not in curves:
-        message = f"{path} has no column {column or name}; take one of them by {text}:{next(iter(curves))}"
+        message = (
+            f"{path} has no column {column or name}; choose one of them, such as {text}:{next(iter(curves))}"
+        )
         raise _wrong(name, "no_such_column", f"{message} (it has {', '.join(curves)})")
     if read.assumed:
         click.echo(f"{name} from {path or text}: {', '.join(read.assumed)}", err=True)

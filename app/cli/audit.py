@@ -68,7 +68,7 @@ def verify_command(ctx: click.Context, head: str | None, data: Path | None) -> N
 
 
 class CannotRead(click.ClickException):
-    """The audit cannot be read; this is no statement about its rows."""
+    """The audit cannot be read, so nothing is known about its rows."""
 
     exit_code = 2
 

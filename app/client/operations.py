@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from io import BytesIO
 from typing import TypedDict, Unpack
@@ -154,15 +154,15 @@ def solve(
     version: int,
     inputs: Values,
     unknown: str,
-    bounds: tuple[object, object],
+    between: Sequence[object],
     target: Values,
     **options: Unpack[SolveOptions],
 ) -> Exchange[Solution]:
-    """Find the inputs that give a wanted output, between bounds.
+    """Find the inputs that give a wanted output, in an interval.
 
     Options are `outputs`, `level`, `tolerance`, `units`.
     """
-    body = {"inputs": inputs, "unknown": unknown, "bounds": bounds, "target": target, **options}
+    body = {"inputs": inputs, "unknown": unknown, "between": list(between), "target": target, **options}
     return calculated(Solution, post(f"/templates/{id}/versions/{version}/solve", body))
 
 

@@ -13,12 +13,14 @@ from app.designs.document import (
     CRITERION,
     NAME,
     WORD,
+    AssumedValue,
     CriterionName,
     Document,
     Iteration,
     Model,
     Name,
     Step,
+    TableOfResults,
     WrittenCriterion,
 )
 from app.designs.variants.names import MOST_VARIANTS, PLACE
@@ -127,6 +129,11 @@ PATCH: JsonDict = {
             "description": "null removes a variant, or one of its values",
         },
         "iterations": {"type": ["array", "null"], "maxItems": 10, "items": _part(Iteration)},
+        "table": {**_part(TableOfResults), "description": "the columns of the table of results"},
+        "assumed": {
+            **_named(_part(AssumedValue)),
+            "description": "proposed values by parameter; null removes the mark",
+        },
         "note": {"type": ["string", "null"], "maxLength": LONGEST_NOTE},
     },
 }

@@ -40,7 +40,7 @@ class Choices:
         Raises
         ------
         FaultyText
-            With code `unknown_name`, `no_truth` or `missing`.
+            The code is `unknown_name`, `no_truth` or `missing`.
         """
         words: dict[str, str] = {}
         for name, word in relation.tests:

@@ -143,6 +143,17 @@ class TableOfResults(Bounded):
         return _without_nothing(plain(self), "columns", "changes")
 
 
+class AssumedValue(Bounded):
+    """A value that was proposed for a parameter, and not given by a person who knows it."""
+
+    model_config = _STRICT
+
+    value: Given = Field(
+        description="the proposed value, as the parameter states it", examples=["= 0.65 * bore"]
+    )
+    source: Sentence = Field(description="where the proposal comes from", examples=["customary"])
+
+
 def _in_natural_order(variants: dict[str, dict[str, Raw]]) -> dict[str, dict[str, Raw]]:
     """Return variants in natural order of their names: main_2 before main_10."""
     return {name: variants[name] for name in sorted(variants, key=natural)}
@@ -174,11 +185,15 @@ class Document(Bounded):
         examples=[{"main_1": {"clearance": "55 um"}, "main_2": {"film.bearing_width": "= width - 2 mm"}}],
     )
     table: TableOfResults = Field(TableOfResults(), description="the table in which variants are compared")
+    assumed: Annotated[dict[Word, AssumedValue], Field(max_length=500), at_most(500)] = Field(
+        {},
+        description="proposed values by parameter; a parameter is assumed as long as it has this value",
+    )
 
     @model_serializer(mode="wrap")
     def without_nothing(self, plain: SerializerFunctionWrapHandler) -> JsonObject:
-        """Remove empty criteria, variants and table, so that equal documents have one stored form."""
-        return _without_nothing(plain(self), "criteria", "variants", "table")
+        """Remove empty optional members, so that equal documents have one stored form."""
+        return _without_nothing(plain(self), "criteria", "variants", "table", "assumed")
 
     @model_validator(mode="before")
     @classmethod
@@ -238,6 +253,12 @@ StoredDocument = JsonObject
 """A document as a revision stores it: `Document.model_dump` in JSON mode, by any version of the program."""
 
 
+def assumed_values(document: StoredDocument) -> JsonObject:
+    """Return the proposed values that parameters of a stored document still have, by parameter."""
+    parameters, proposed = document.get("parameters", {}), document.get("assumed", {})
+    return {name: one for name, one in proposed.items() if parameters.get(name) == one["value"]}
+
+
 def merge(document: Mapping[str, Json], patch: Mapping[str, Raw]) -> JsonObject:
     """Return the document with a merge patch applied (RFC 7396).
 
@@ -264,7 +285,7 @@ def _is_container(path: tuple[str, ...]) -> bool:
     The document, its groups, its steps and models, and their parts are containers.
     """
     match path:
-        case () | ("parameters" | "steps" | "models" | "criteria" | "variants" | "table",):
+        case () | ("parameters" | "steps" | "models" | "criteria" | "variants" | "table" | "assumed",):
             return True
         case ("steps" | "models" | "variants", _):
             return True

@@ -53,5 +53,5 @@ class NotConverged(DesignError):
             f"the iteration through {through} did not converge to {tolerance:g} within {len(rounds)} rounds: "
             f"it assumed {last['assumed']:.6g} and measured {last['measured']:.6g} {last['unit']}; "
             "start nearer, allow more rounds, or weaken the feedback"
-            + (f"; {rounded} may alternate between two multiples: take a smaller step" if rounded else "")
+            + (f"; {rounded} may alternate between two multiples: use a smaller step" if rounded else "")
         )

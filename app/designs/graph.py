@@ -295,7 +295,7 @@ def raise_if(faults: list[Fault]) -> None:
     Raises
     ------
     InvalidInputs
-        With all faults.
+        If there are faults; the error lists all of them.
     """
     if faults:
         raise InvalidInputs(faults)
@@ -425,7 +425,7 @@ def read_document(raw: Mapping[str, Raw]) -> Document:
     Raises
     ------
     InvalidInputs
-        With all parts that do not have the form of a design.
+        If parts do not have the form of a design; the error names all of them.
     """
     try:
         return Document.model_validate(raw)

@@ -92,7 +92,7 @@ def _apply(session: Session, row: DesignRow, change: LabelsIn) -> None:
         upsert(session, DesignTagRow(design_id=row.id, key=key_of(tag), tag=clean(tag)))
     session.flush()
     if len(tags_of(session, [row.id])[row.id]) > MOST_TAGS:
-        raise InvalidInputs([Fault("add_tags", "too_many", f"a design has at most {MOST_TAGS} tags")])
+        raise InvalidInputs([Fault("add_tags", "too_many", f"a design may have at most {MOST_TAGS} tags")])
     if change.archived is not None and change.archived != (row.archived is not None):
         row.archived = now() if change.archived else None
 

@@ -62,7 +62,8 @@ def preview(
     Raises
     ------
     InvalidInputs
-        With all faults, except relations of model parameters with wrong units, which appear in their status.
+        If there are faults; the error lists all of them, except relations of model parameters with wrong
+        units, which appear in the status of the parameters.
     """
     with database.read() as session:
         head = (
@@ -111,7 +112,7 @@ def _variants(
     Raises
     ------
     InvalidInputs
-        With the faults for which a save would refuse the table as well.
+        If a save would refuse the table; the error lists the faults.
     """
     available = Available(catalogues, built(database), analysed(database))
     outcomes, faults = checked(document, base, available, saved)

@@ -71,7 +71,7 @@ class Regeneration:
         Raises
         ------
         JobFailed
-            With the problem, for every fault of the design itself.
+            If the design itself has a fault; the error contains the problem.
         """
         assert job.design is not None
         assert job.revision is not None

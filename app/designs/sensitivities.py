@@ -25,10 +25,11 @@ from app.designs.network import Cell, Subject
 from app.designs.origins import literals_behind, measures_behind, through_solids
 from app.designs.roundings import between, in_words
 from app.designs.schemas.designs import Sensitivity
-from app.designs.slopes import Local, Slopes, slope_in, slopes_at
+from app.designs.slopes import Local, Slopes, slopes_at
 from app.pool.cost import EXPENSIVE
 from app.presentation.units import System, shown_unit
 from app.reference import Reference
+from app.schemas.slopes import slope_in
 from templates.core.arrays import Array
 from templates.core.errors import Fault, InvalidInputs, listed
 from templates.core.units.units import registry, unit

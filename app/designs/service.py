@@ -167,7 +167,7 @@ class Designs:
         Raises
         ------
         InvalidInputs
-            With all faults; nothing is saved then.
+            If there are faults; the error lists all of them, and nothing is saved.
         """
         if before := once.find_in(self.database):
             return _saved_before(before)
@@ -195,7 +195,7 @@ class Designs:
         StaleRevision
             If `expected` (an If-Match) is not the newest revision.
         InvalidInputs
-            With all faults; nothing is saved then.
+            If there are faults; the error lists all of them, and nothing is saved.
         """
         if patch.keys() == {"name"} and (renamed := self._renamed(id, patch, note, expected, once)):
             return renamed
@@ -346,7 +346,7 @@ class Designs:
         Raises
         ------
         InvalidInputs
-            With all faults.
+            If there are faults; the error lists all of them.
         """
         document, calculation = self.prepare(raw)
         raise_if([*calculation.faults, *tolerances.not_stated_in(calculation, saved)])
@@ -370,7 +370,7 @@ class Designs:
         Raises
         ------
         InvalidInputs
-            With all faults of the table.
+            If the table has faults; the error lists all of them.
         """
         outcomes, faults = self._checked(document, base, saved)
         raise_if(faults)

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from app.schemas.answers import Quantity
 from templates.core.arrays import Array
-from templates.core.units.quotient import quotient
-from templates.core.units.units import unit
 
 
 @dataclass(frozen=True)
@@ -68,10 +64,3 @@ def slopes_at(points: Local, y: Array) -> Slopes:
         slope = rise / (sides * points.steps)
         elasticity = slope * points.at / value if value else np.full(dimensions, np.nan)
     return Slopes(value, slope, elasticity)
-
-
-def slope_in(over: str, under: str, slope: float) -> Quantity | None:
-    """Return a slope [SI] as a quantity in the unit `over` per `under`; None if it is not finite."""
-    name = quotient(over, under)
-    value = slope / unit(name).factor
-    return Quantity(value=value, unit=name) if math.isfinite(value) else None

@@ -27,7 +27,8 @@ from app.presentation.numbers import percent
 from app.reference import Reference
 from app.schemas.answers import Quantity, Shown, Values, Warning
 from app.schemas.bounds import Bounded, at_most
-from app.schemas.values import Given
+from app.schemas.slopes import slope_in
+from app.schemas.values import Between, Given
 from templates.core.criteria.judgement import Judgement
 from templates.core.errors import Fault, FaultyText, InvalidInputs
 from templates.core.language.confirmation import Root
@@ -60,9 +61,7 @@ class SolveDesignIn(Bounded):
     )
 
     unknown: Named = Field(description="a parameter, `step.input` or `model.parameter` that no relation sets")
-    between: Annotated[list[Given], Field(min_length=2, max_length=2)] = Field(
-        description="the lowest and the highest value to try"
-    )
+    between: Between
     target: Annotated[dict[Named, Given], Field(min_length=1, max_length=1), at_most(1)] = Field(
         description="one output and its requested value"
     )
@@ -86,7 +85,7 @@ def solved(task: DesignTask, revision: int, body: str) -> DesignSolution:
     Raises
     ------
     InvalidInputs
-        With the faults of the request or the design.
+        If the request or the design has faults; the error lists them.
     Unreachable
         If no value between the bounds gives the target.
     """
@@ -217,7 +216,9 @@ class _SolutionText:
         return DesignRoot(
             value=root.value,
             unit=self.x,
-            slope=root.slope,
+            crossing=root.crossing,
+            slope=None if root.slope is None else slope_in(self.y, self.x, root.slope),
+            **({} if root.no_slope is None else {"reason": root.no_slope}),
             level=root.level,
             error=root.error,
             confirmed=root.confirmed,

@@ -2,8 +2,8 @@
 
 A step warns about tolerances of its own inputs. A tolerance of a model's parameter stands in the STEP file
 and on the drawing: at faces, or marked in the table. One that a relation brings from a parameter or a step
-may be meant for an analysis of tolerances only, so it is no fault: the revision tells that it is stated
-nowhere.
+may be meant for an analysis of tolerances only, so it is not a fault: the revision warns that no file
+states it.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def not_stated_in(
 ) -> Iterator[Fault]:
     """Yield a fault for each tolerance of a model's parameter, typed there, that no file would state.
 
-    A value that a `saved` document has already, in a variant if named, is no fault.
+    A value that a `saved` document has already, in a variant if named, is not a fault.
     """
     before = _typed_in(saved, variant) if saved else {}
     typed = calculation.typed

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from sqlalchemy.orm import Session
 
 from app.designs import releases, repository, tolerances
+from app.designs.document import assumed_values
 from app.designs.result_records import results_of
 from app.designs.schemas.designs import Design, DesignResults, DesignSummary, ModelMeasurements, Revision
 from app.designs.variants.names import natural
@@ -60,11 +61,18 @@ def _design(
             "iterations": document["iterations"],
             **{name: document[name] for name in ("criteria", "table") if name in document},
             **_variants(document),
+            **_assumed(document),
             "problem": problem,
             "created": created,
             "changed": changed,
         }
     )
+
+
+def _assumed(document: JsonObject) -> JsonObject:
+    """Return the member `assumed` of a design; empty if no value is assumed."""
+    assumed = assumed_values(document)
+    return {"assumed": assumed} if assumed else {}
 
 
 def _variants(document: JsonObject) -> JsonObject:
@@ -155,6 +163,7 @@ def _heading(session: Session, row: RevisionRow) -> dict[str, object]:
         "problem": row.problem,
         "name": row.document["name"],
         "parameters": row.document["parameters"],
+        **_assumed(row.document),
         **_signed(session, row),
     }
 

@@ -82,7 +82,7 @@ class BodyLimits:
         size = sum(map(len, chain.from_iterable(headers))) + len(query) + len(scope.get("raw_path") or b"")
         if size > LONGEST_HEAD:
             most = f"at most {LONGEST_HEAD // 1024} KiB"
-            raise HeadTooLarge(f"the address and the headers together may have {most}")
+            raise HeadTooLarge(f"the address and the headers together may be {most} long")
         if len(headers) > MOST_HEADERS:
             raise HeadTooLarge(f"a request may have at most {MOST_HEADERS} headers")
         if query.count(b"&") >= MOST_FIELDS:
@@ -91,7 +91,7 @@ class BodyLimits:
             raise self._too_large()
 
     def _too_large(self) -> BodyTooLarge:
-        return BodyTooLarge(f"a body may have at most {self.size / 2**20:g} MiB")
+        return BodyTooLarge(f"a body may be at most {self.size / 2**20:g} MiB in size")
 
     def _counted(self, receive: Receive) -> Receive:
         """Return a `receive` that raises an error once a body of unknown length exceeds the limit."""

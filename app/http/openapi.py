@@ -6,7 +6,7 @@ header cannot be null; a change needs If-Match; a name that does not fit the pat
 The problems that follow from an operation's parameters and body are added here too; a route declares only its
 other problems.
 
-FastAPI's dictionaries hold parts of a description of any depth, so their type is `Any`.
+FastAPI's dictionaries are nested to any depth, so their values have the type `Any`.
 """
 
 from __future__ import annotations
@@ -22,9 +22,34 @@ from fastapi.openapi.docs import get_swagger_ui_html
 from fastapi.responses import HTMLResponse
 from fastapi.routing import APIRoute
 
+from app.http.answer_examples import add_examples
 from app.schemas.problems import Fault, Problem, refusals
 
 REFERENCE = "#/components/schemas/{model}"
+TAGS = {
+    "templates": "Calculations: what each needs and returns; evaluate one, solve it, write it out.",
+    "curves": "Tables of measured values, read as curves.",
+    "designs": "Calculations and models tied by relations, with their revisions, results and criteria.",
+    "variants": "Variants of a design, and the table that compares them.",
+    "files": "STEP, meshes, drawings and pictures of the models of a design.",
+    "reports": "Reports of a design on screen and paper, and its calculations written out.",
+    "studies": "Many calculations of a design: grids, samples, sensitivities, optima.",
+    "approvals": "Signatures, comments and releases of revisions.",
+    "models": "CAD models without a design: build, analyse, verify, import.",
+    "worksheets": "Calculations that engineers write as text.",
+    "library": "Tables of materials, oils and sizes.",
+    "jobs": "Long work, its progress and its results.",
+    "problems": "The meaning of an error.",
+    "principals": "People and programs, their roles and keys.",
+    "audit": "The record of all changes.",
+    "operations": "Health and metrics of the service.",
+}
+"""The groups of operations in the order in which a user meets them, and what each is about."""
+VARIATIONS = (
+    ("/revisions/{number}", "_of_revision", " of a Revision"),
+    ("/models/{name}", "_of_model", ", by Model"),
+    (".{kind}", "_as", ", by Format"),
+)
 
 
 def operation_id(route: APIRoute) -> str:
@@ -33,10 +58,19 @@ def operation_id(route: APIRoute) -> str:
     It is the name of the route's function, such as `evaluate_template`, with a suffix if the function serves
     several paths, such as `show_report_of_revision_as`.
     """
+    return route.name + "".join(end for end, _ in _variations(route))
+
+
+def summary(route: APIRoute) -> str:
+    """Return the title of an operation, such as `Show Report of a Revision, by Format`."""
+    return route.name.replace("_", " ").title() + "".join(words for _, words in _variations(route))
+
+
+def _variations(route: APIRoute) -> list[tuple[str, str]]:
+    """Return the ends of the name and of the title by which the paths of one function differ."""
     if not route.name.endswith(("_report", "_worksheet", "_file", "show_variant", "show_variants")):
-        return route.name
-    ends = (("/revisions/{number}", "_of_revision"), ("/models/{name}", "_of_model"), (".{kind}", "_as"))
-    return route.name + "".join(end for part, end in ends if part in route.path)
+        return []
+    return [(end, words) for part, end, words in VARIATIONS if part in route.path]
 
 
 def include(app: FastAPI, router: APIRouter) -> None:
@@ -48,6 +82,7 @@ def include(app: FastAPI, router: APIRouter) -> None:
         if isinstance(route, APIRoute):
             route.responses = {**app.router.responses, **route.responses}
             route.unique_id = route.operation_id or operation_id(route)
+            route.summary = route.summary or summary(route)
         app.router.routes.append(route)
 
 
@@ -61,6 +96,7 @@ def describe_interface(app: FastAPI) -> dict[str, Any]:
             _drop_nulls(operation)
             _declare_preconditions(method, operation)
             _declare_problems(operation)
+        app.openapi_schema["tags"] = [{"name": name, "description": text} for name, text in TAGS.items()]
         schemas = app.openapi_schema["components"]["schemas"]
         for _, operation in _operations(app.openapi_schema):
             _name_bodies(operation, schemas)
@@ -69,6 +105,7 @@ def describe_interface(app: FastAPI) -> dict[str, Any]:
             schemas[model.__name__].pop("$defs", None)
         for schema in schemas.values():
             _simplify(schema)
+        add_examples(app.openapi_schema)
     return app.openapi_schema
 
 
@@ -118,7 +155,7 @@ def _declare_problems(operation: dict[str, Any]) -> None:
         _refused(operation, 408, 413, 415, 422)
     if operation.get("parameters"):
         _refused(operation, 422)
-    if operation["tags"] != ["health"] and operation["tags"] != ["problems"]:
+    if operation["tags"] not in (["operations"], ["problems"]):
         _refused(operation, 503)
 
 

@@ -1,4 +1,4 @@
-"""Path parameters that are ids; a fixed word in their place, as in `/worksheets/check`, is no id."""
+"""Path parameters that are ids; a fixed word in their place, as in `/worksheets/check`, is not an id."""
 
 from __future__ import annotations
 

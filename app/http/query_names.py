@@ -18,7 +18,8 @@ def refuse_unknown(request: Request) -> None:
     Raises
     ------
     InvalidInputs
-        With the first few unknown names, their nearest matches, and all parameters of the route.
+        If names are unknown. The error lists the first few, their nearest matches, and all parameters of the
+        route.
     """
     if not request.scope["query_string"]:
         return

@@ -266,7 +266,7 @@ class PlainRoute(StrictRoute):
         Raises
         ------
         RequestValidationError
-            With all faults.
+            If there are faults; the error lists all of them.
         """
         faults: list[object] = []
         values = {one.name: one.value(request.path_params, faults) for one in self._in_path}
@@ -423,7 +423,7 @@ def refuse_nul_in_address(request: Request) -> None:
     Raises
     ------
     HTTPException
-        With 404, if the path contains it: no resource has such a name.
+        If the path contains it; the status is 404, because no resource has such a name.
     InvalidInputs
         If query parameters contain it.
     """
@@ -451,7 +451,7 @@ def refuse_nul_in(value: object) -> None:
     Raises
     ------
     InvalidInputs
-        With the fields that contain it.
+        If fields contain it; the error names them.
     """
     _refuse_nul(dict(_nul_places(value)))
 

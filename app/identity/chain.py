@@ -113,9 +113,11 @@ def verify(session: Session, exported: str | None = None) -> ChainCheck:
             last = Link(last.seq + 1, row.hash)
             met = met or row.hash == exported
     except _DAMAGED:
-        return ChainCheck(last, unsealed, f"row {last.seq + 1} was changed: it holds what is not text")
+        return ChainCheck(last, unsealed, f"row {last.seq + 1} was changed: one of its values is not text")
     if len(waiting(session)) < min(unsealed, SOME):
-        return ChainCheck(last, unsealed, f"a row behind row {last.seq}, not sealed, holds what is not text")
+        return ChainCheck(
+            last, unsealed, f"an unsealed row after row {last.seq} has a value that is not text"
+        )
     cut = f"no row has the hash {exported}: rows were cut off at the end, or all of them written again"
     return ChainCheck(last, unsealed, "" if met else cut)
 
@@ -142,17 +144,19 @@ def _fault(row: AuditRow, last: Link) -> str:
     """Return the fault of a row that follows a sound row; empty if the row is sound."""
     seq, name = row.seq, f"row {row.seq} ({row.action} of {row.object} by {row.name}, {row.at})"
     if not isinstance(seq, int):
-        return f"{name} was changed: its number is none"
+        return f"{name} was changed: its number is not an integer"
     if not _is_text(row):
-        return f"{name} was changed: it holds what is not text"
+        return f"{name} was changed: one of its values is not text"
     if seq > last.seq + 1:
         return f"row {last.seq + 1} is missing: after row {last.seq} comes {name}"
     if seq <= last.seq or row.hash is None:
-        return f"{name} was inserted: no sealer numbers a row so"
+        return f"{name} was inserted: the sealer would not have numbered it like this"
     if row.hash != hash_of(row, seq, row.previous):
-        return f"{name} was changed: it does not say what its hash was made of"
+        return f"{name} was changed: its content does not match its hash"
     if row.previous != last.hash:
-        return f"{name} was inserted, or the row before it was replaced: it does not continue row {last.seq}"
+        return (
+            f"{name} was inserted, or row {last.seq} was replaced: it does not contain the hash of that row"
+        )
     return ""
 
 

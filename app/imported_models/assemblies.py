@@ -90,7 +90,7 @@ def described_assembly(
         elif there.sha not in files:
             files[there.sha] = store.read(there.sha)
         if sum(map(len, files.values())) > LARGEST:
-            detail = f"the STEP files of the components have more than {LARGEST // 2**20} MiB together"
+            detail = f"the STEP files of the components are together larger than {LARGEST // 2**20} MiB"
             raise UnreadableModel("too_large", detail)
         components[_component(fixed, there)] = fixed.place()
     _require_distinct(base, components)
@@ -243,6 +243,6 @@ def _require_distinct(
         names = {parameter.name for parameter in one.parameters({})}
         if clash := sorted(names & taken):
             raise UnreadableModel(
-                "name", f"{one.name}: {clash[0]} is a parameter already; choose another name"
+                "name", f"{one.name}: {clash[0]} is already a parameter; choose another name"
             )
         taken |= names

@@ -150,7 +150,7 @@ def read(content: bytes) -> AssemblyManifest:
     Raises
     ------
     UnreadableModel
-        With all faults.
+        If there are faults; the error lists all of them.
     """
     return read_manifest(AssemblyManifest, content, "the manifest of the assembly")
 

@@ -24,10 +24,10 @@ def read_manifest(kind: type[M], content: bytes, words: str) -> M:
     Raises
     ------
     UnreadableModel
-        With all faults.
+        If there are faults; the error lists all of them.
     """
     if len(content) > LONGEST:
-        raise UnreadableModel("too_large", f"a manifest has at most {LONGEST // 1024} KiB")
+        raise UnreadableModel("too_large", f"a manifest may be at most {LONGEST // 1024} KiB in size")
     try:
         return kind.model_validate_json(content)
     except ValidationError as error:

@@ -1,4 +1,4 @@
-"""Read a data folder for maintenance without writing, because a running service may use it."""
+"""Read a data folder for maintenance, without writing to it, because a running service may be using it."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ from app.observation import metrics
 from app.observation.schemas import Health, Ready
 from app.schemas.problems import refusals
 
-router = APIRouter(tags=["health"])
+router = APIRouter(tags=["operations"])
 
 
 @router.get("/healthz", dependencies=[public()])

@@ -156,7 +156,7 @@ class Questions(Generic[Q, A]):
         Raises
         ------
         InvalidInputs, NotFound
-            With all known faults of the request or the design.
+            If the request or the design has faults; the error lists all known ones.
         QueueFull, TooManyCalculations
             If too many jobs or calculations are waiting.
         """
@@ -234,7 +234,7 @@ class Questions(Generic[Q, A]):
         Raises
         ------
         JobFailed
-            With the problem, for any error that the request itself causes.
+            If the request itself causes an error; the failure contains the problem.
         """
         try:
             question = question_of(self.kind.form, job, self.store)

@@ -11,6 +11,7 @@ from markupsafe import Markup, escape
 
 from app.presentation import numbers
 from app.presentation.bidi import balanced, bare
+from app.presentation.input_text import text_of
 from app.reference import Reference
 from templates.core.paper.mathml import mathml
 
@@ -67,6 +68,7 @@ def environment(folder: Path) -> Environment:
         "percent": numbers.percent,
         "rough": numbers.rough,
         "in_line": numbers.in_line,
+        "as_typed": text_of,
         "rounded": numbers.rounded,
         "course": course,
         "reference": Reference.parse,

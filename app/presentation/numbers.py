@@ -120,7 +120,7 @@ def rounded(value: Rounded) -> str:
 
 
 def _line(quantity: Mapping[str, object]) -> str:
-    if quantity["value"] is None:
+    if not has_value(quantity["value"]):
         return str(quantity.get("reason") or "none")
     symbol = quantity.get("unit")
     value = quantity["value"]
@@ -131,7 +131,14 @@ def _line(quantity: Mapping[str, object]) -> str:
 def _written(value: object) -> str:
     if isinstance(value, list):
         return _list(value)
+    if value is None:
+        return MISSING
     return plain(value) if isinstance(value, float) else str(value)
+
+
+def has_value(value: object) -> bool:
+    """Return whether there is a value: something other than None, or than a list of nothing else."""
+    return any(map(has_value, value)) if isinstance(value, list) and value else value is not None
 
 
 def _list(values: list[object]) -> str:
@@ -152,6 +159,7 @@ def _remark(values: object) -> str:
     return f"({counted(values)} values{where})"
 
 
+MISSING = "–"  # an item of a list without a value
 FEW = 20  # longest list that is shown completely
 
 

@@ -21,7 +21,7 @@ class Line:
     si: Cell = NOTHING
     origin: str = ""  # given, default, or the relation
     error: str = ""
-    relation: str = ""  # MathML; empty if the origin is no relation, or only a name
+    relation: str = ""  # MathML; empty if the origin is not a relation, or only a name
 
 
 @dataclass(frozen=True)

@@ -33,7 +33,7 @@ from app.schemas.problems import Responses, RouteOptions, refusals
 from app.storage.errors import NotFound
 
 router = APIRouter(
-    prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute, dependencies=[ExpensiveSteps]
+    prefix="/api/v1/designs", tags=["reports"], route_class=StrictRoute, dependencies=[ExpensiveSteps]
 )
 
 REPORTS = {"html": "text/html", "pdf": "application/pdf"}

@@ -192,8 +192,12 @@ class Reports:
             units=system,
             verdict=judged(worked),
             signatures=signatures_of(id, number, system, signed),
-            summary=[*_summary(steps, models), *(f"note on {w.name}: {w.detail}" for w in worked.warnings)],
-            parameters=[Line(n, "", Cell(text=typed(value))) for n, value in worked.parameters.items()],
+            summary=[
+                *_assumed(worked),
+                *_summary(steps, models),
+                *(f"note on {w.name}: {w.detail}" for w in worked.warnings),
+            ],
+            parameters=_parameters(worked),
             steps=steps,
             models=models,
             rounds=[_round(one) for one in worked.iterations],
@@ -257,6 +261,21 @@ class Reports:
             fields_of(session, catalogue, id, number, name) if model.analyses and SURFACE in files else {}
         )
         return model_of(session, id, number, name, present, catalogue, system, remark, [*fields.values()])
+
+
+def _assumed(revision: schemas.Revision) -> list[str]:
+    """Return the sentence that names the assumed parameters; empty if none is assumed."""
+    names = [clean(name.replace("_", " ")) for name in revision.assumed]
+    return [f"assumed, not given: {', '.join(names)}"] if names else []
+
+
+def _parameters(revision: schemas.Revision) -> list[Line]:
+    """Return the parameters as typed; the origin of an assumed one is the source of the proposal."""
+    origins = {name: clean(f"assumed: {one.source}") for name, one in revision.assumed.items()}
+    return [
+        Line(words=name, symbol="", value=Cell(text=typed(value)), origin=origins.get(name, "given"))
+        for name, value in revision.parameters.items()
+    ]
 
 
 def _kinds(*, is_analysed: bool) -> tuple[str, ...]:

@@ -45,7 +45,7 @@ def read_block(pdf: bytes) -> Block:
     from pypdf import PdfReader  # in the extra `team`; only this module reads PDF
 
     if len(pdf) > LARGEST:
-        raise NotReport(f"the file has more than {LARGEST // 2**20} MiB: it is not a report of this service")
+        raise NotReport(f"the file is larger than {LARGEST // 2**20} MiB: it is not a report of this service")
     try:
         attached = PdfReader(io.BytesIO(pdf)).attachments.get(ATTACHMENT, [])
     except Exception as error:  # whatever somebody wrote into the file

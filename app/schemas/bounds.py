@@ -41,6 +41,6 @@ def at_most(count: int) -> BeforeValidator:
 
 def _few(raw: object, most: int) -> object:
     if isinstance(raw, Mapping) and len(raw) > most:
-        message = "an object here has at most {most} names, not {count}"
+        message = "an object here may have at most {most} names, not {count}"
         raise PydanticCustomError("too_long", message, {"most": most, "count": len(raw)})
     return raw

@@ -27,11 +27,17 @@ GIVEN: JsonDict = {
 Given = Annotated[object, WithJsonSchema(GIVEN)]
 """A value as typed; the domain reads it and reports faults."""
 
+Between = Annotated[
+    list[Given],
+    Field(min_length=2, max_length=2, description="an interval: the lowest and the highest value to try"),
+]
+"""An interval of an input, as every search takes it."""
+
 Limits = Annotated[
     dict[str, Given],
     Field(
         max_length=200,
-        description="limits of criteria that are no inputs of the calculation, by name, or library rows: "
+        description="limits of criteria that are not inputs of the calculation, by name, or library rows: "
         '`{"permissible_pressure": "35 MPa"}`, `{"bearing_material": "…"}`',
     ),
     at_most(200),

@@ -32,7 +32,7 @@ def check_engine(engine: str) -> str:
     Raises
     ------
     ValueError
-        With the fault, and a correct form.
+        If the setting is wrong; the message states the fault and a correct form.
     """
     if engine == LOCAL:
         return engine
@@ -55,7 +55,7 @@ def check_collector(url: str | None) -> str | None:
     Raises
     ------
     ValueError
-        With the fault, and a correct form.
+        If the setting is wrong; the message states the fault and a correct form.
     """
     if url is None:
         return None

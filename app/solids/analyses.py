@@ -1,4 +1,4 @@
-"""Finite-element analyses of CAD models outside of designs."""
+"""Finite-element analyses of CAD models outside a design."""
 
 from __future__ import annotations
 
@@ -170,7 +170,7 @@ class ModelAnalysis:
         Raises
         ------
         JobFailed
-            With the problem, for any error that the model itself causes.
+            If the model itself causes an error; the failure contains the problem.
         """
         asked = job.payload
         question = Question(**asked["question"])

@@ -99,7 +99,7 @@ def bore_of(shape: CadModel) -> BorePlace:
     Raises
     ------
     AnalysisError
-        With code `no_bore`, if the model has none.
+        If the model has none; the code is `no_bore`.
     """
     place = bore_place(shape)
     if place is None:
@@ -113,7 +113,7 @@ def shaft_of(shape: CadModel) -> Shaft:
     Raises
     ------
     AnalysisError
-        With code `no_shaft`, if the model is not a shaft.
+        If the model is not a shaft; the code is `no_shaft`.
     """
     shaft = shape.shaft()
     if shaft is None:
@@ -127,7 +127,7 @@ def throw_of(shape: CadModel, question: Question) -> Crank | None:
     Raises
     ------
     AnalysisError
-        With code `no_throw`, if the model is not a single crank throw, or has split pins.
+        If the model is not a single crank throw, or has split pins; the code is `no_throw`.
     """
     if question.kind != UNIT_LOADS:
         return None

@@ -1,4 +1,4 @@
-"""CAD models outside of designs, and the files of builds."""
+"""CAD models that are built outside a design, and the files of all builds."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class File:
 
 
 class Models:
-    """Provides builds outside of designs, and the files of all builds."""
+    """Provides builds outside a design, and the files of all builds."""
 
     def __init__(self, database: Database, store: Artifacts, jobs: Jobs, catalogues: Catalogues) -> None:
         self.database, self.store, self.jobs, self.catalogues = database, store, jobs, catalogues
@@ -182,7 +182,7 @@ class ModelBuild:
         Raises
         ------
         JobFailed
-            With the problem, for any error that the model itself causes.
+            If the model itself causes an error; the failure contains the problem.
         """
         asked = job.payload
         if "builds" in asked:

@@ -195,7 +195,7 @@ def in_order(kind: str, outputs: Container[str]) -> tuple[str, ...]:
 def no_shaft(cls: type[CadModel]) -> str | None:
     """Return the reason why solids of a model cannot be analysed as shafts; None if they can."""
     if issubclass(cls, AssemblyModel):
-        return f"{cls.id} is an assembly: finite elements take one solid"
+        return f"{cls.id} is an assembly: a finite-element analysis needs a single solid"
     if cls.shaft is not CadModel.shaft:
         return None
     return f"{cls.id} is not a shaft: it does not say by which ends it is held and loaded"

@@ -277,7 +277,7 @@ class ArtifactStore:
             raise ArtifactMissing(sha) from None
 
     def _clear(self, target: Path) -> None:
-        """Set aside an object that has the name of a file but is none, such as a folder."""
+        """Set aside an object that has the name of a file but is not a file, such as a folder."""
         if target.is_dir() and not target.is_symlink():
             aside = self.folder / QUARANTINE / f"{target.name}.folder-{_moment()}"
             aside.parent.mkdir(exist_ok=True)

@@ -73,7 +73,7 @@ class OperationClock:
 
     @property
     def elapsed(self) -> int:
-        """Return the whole seconds that the counter does not include yet."""
+        """Return the number of whole seconds that have passed but are not yet added to the counter."""
         return int(time.monotonic() - self._counted)
 
     def advance(self, connection: Connection) -> int:

@@ -126,7 +126,7 @@ class KeyReused(StorageError):
     """An Idempotency-Key was used again for another request."""
 
     def __init__(self, key: str) -> None:
-        super().__init__(f"the Idempotency-Key {key[:80]!r} was used for a different request; take a new one")
+        super().__init__(f"the Idempotency-Key {key[:80]!r} was used for a different request; use a new one")
 
 
 class ArtifactMissing(StorageError):

@@ -36,7 +36,7 @@ def refuse_damage(url: str) -> None:
     Raises
     ------
     DatabaseDamaged
-        With the damaged pages and tables.
+        If the database is damaged; the error names the damaged pages and tables.
     """
     path = sqlite_file(url)
     if path is not None and (marker := marker_of(path)).exists():

@@ -12,7 +12,7 @@ from app.designs.bodies import LONGEST_NOTE
 from app.designs.document import CriterionName
 from app.plain import JsonObject
 from app.schemas.bounds import Bounded, at_most
-from app.schemas.values import Given
+from app.schemas.values import Between, Given
 from app.studies.schemas import Method
 
 MOST_VARIED, MOST_OUTPUTS, MOST_BUILT, MOST_SEED = 20, 50, 200, 2**32 - 1
@@ -32,9 +32,7 @@ class Vary(Bounded):
 
     model_config = _STRICT
 
-    between: Annotated[list[Given], Field(min_length=2, max_length=2)] | None = Field(
-        None, examples=[["0.03 mm", "0.09 mm"]], description="the lower and the upper bound"
-    )
+    between: Between | None = Field(None, examples=[["0.03 mm", "0.09 mm"]])
     values: Annotated[list[Given], Field(min_length=1, max_length=10_000)] | None = Field(
         None, examples=[["18 mm", "20 mm"]]
     )
@@ -126,7 +124,7 @@ def study_of(raw: JsonObject) -> StudyIn:
     Raises
     ------
     InvalidBody
-        With all faults.
+        If there are faults; the error lists all of them.
     """
     try:
         return StudyIn.model_validate(raw)

@@ -63,7 +63,7 @@ def calculated(
 
 
 def placed(ready: TaskState, rows: Array) -> dict[Reference, Array]:
-    """Return the columns of rows, shape (N, d), by the places that they set."""
+    """Return the columns of an array of rows, shape (N, d), each by the place in the design that it sets."""
     return {place: rows[:, column] for column, place in enumerate(ready.asked.places)}
 
 

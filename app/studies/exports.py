@@ -78,7 +78,9 @@ def xlsx(listing: RowList, system: System) -> bytes:
         If there are too many rows for a sheet.
     """
     if listing.stored.count > MOST_XLSX and len(listing.numbers()) > MOST_XLSX:
-        detail = f"a sheet has at most {MOST_XLSX} rows; download rows.csv or rows.npz, or filter by `where`"
+        detail = (
+            f"a sheet may have at most {MOST_XLSX} rows; download rows.csv or rows.npz, or filter by `where`"
+        )
         raise InvalidInputs([Fault("rows", "too_many_rows", detail)])
     from openpyxl import Workbook  # type: ignore[import-untyped]
 

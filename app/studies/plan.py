@@ -94,7 +94,8 @@ def planned(task: Task, rows: Rows | None, solid_seconds: float) -> tuple[Plan, 
     Raises
     ------
     InvalidInputs
-        With all faults: unknown places, units, bounds, too many rows, too many solids.
+        If there are faults, such as unknown places, wrong units or bounds, too many rows or too many solids.
+        The error lists all of them.
     """
     ready = prepared(task)
     body, given = ready.asked.body, None

@@ -45,7 +45,7 @@ def asked_of(body: StudyIn, varied: Sequence[str], engine: DesignEngine) -> Stud
     Raises
     ------
     InvalidInputs
-        With all faults.
+        If there are faults; the error lists all of them.
     """
     _refuse(list(_contradictions(body, varied)))
     space = Space(tuple(_variables(body, varied, engine)))
@@ -113,8 +113,6 @@ def _variables(body: StudyIn, varied: Sequence[str], engine: DesignEngine) -> It
 def _variable(name: str, vary: Vary, unit: str) -> Variable:
     if vary.between is not None:
         low, high = (single(raw, unit, name) for raw in vary.between)
-        if low == high:
-            raise InvalidInputs([Fault(name, "empty_interval", "both bounds are the same; give two")])
         return Interval(name, low, high, vary.spacing)
     return Values(name, tuple(single(raw, unit, name) for raw in vary.values or ()))
 

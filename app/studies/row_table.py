@@ -55,7 +55,8 @@ def given_rows(rows: Rows, engine: DesignEngine) -> Array:
     Raises
     ------
     InvalidInputs
-        With up to `MOST_FAULTS` faulty cells, each named by its column and, if it has one, its row.
+        If cells are faulty. The error lists up to `MOST_FAULTS` of them, each by its column and, if it has
+        one, its row.
     """
     units = {name: engine.unit(Reference.parse(name)) for name in columns_named(rows)}
     faults: list[Fault] = []

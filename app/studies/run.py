@@ -271,7 +271,7 @@ class StudyRunner:
         Raises
         ------
         JobFailed
-            With the problem, for any error that the study itself causes.
+            If the study itself causes an error; the failure contains the problem.
         JobRests
             If another study waits for the thread.
         """

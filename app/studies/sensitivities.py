@@ -8,9 +8,10 @@ from dataclasses import dataclass
 
 from app.designs.engine.design_engine import DesignEngine
 from app.designs.roundings import between, in_words
-from app.designs.slopes import Local, slope_in
+from app.designs.slopes import Local
 from app.reference import Reference
 from app.schemas.answers import Quantity
+from app.schemas.slopes import slope_in
 from app.studies.methods.points import Points
 from app.studies.methods.sensitivity import (
     MorrisPoints,

@@ -38,7 +38,7 @@ def counted(ready: TaskState, count: int, given: Array | None, levels: Levels) -
     Raises
     ------
     InvalidInputs
-        With code `needs_solids`, if there are too many, or if a search would need solids.
+        If there are too many, or if a search would need solids; the code is `needs_solids`.
     """
     solids, points = ready.solids, ready.asked.points
     if not solids.measures:

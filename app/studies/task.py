@@ -79,7 +79,7 @@ def prepared(task: Task) -> TaskState:
     Raises
     ------
     InvalidInputs
-        With all faults of the study.
+        If the study has faults; the error lists all of them.
     """
     return _prepared(task)
 

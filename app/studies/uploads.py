@@ -32,7 +32,7 @@ def read_rows(content: Pieces, kind: FileKind, places: Places) -> Mapping[str, R
     Raises
     ------
     InvalidInputs
-        With up to `MOST_FAULTS` faulty cells, headings included.
+        If cells or headings are faulty; the error lists up to `MOST_FAULTS` of them.
     """
     body = content.joined()
     is_sheet = kind == "xlsx"

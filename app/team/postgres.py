@@ -82,7 +82,7 @@ class Cluster:
         self.execute(f'DROP DATABASE IF EXISTS "{database}" WITH (FORCE)')
 
     def execute(self, statement: str) -> None:
-        """Execute a statement outside of any transaction."""
+        """Execute a statement outside any transaction."""
         import psycopg
 
         with psycopg.connect(self._connection, autocommit=True) as connection:

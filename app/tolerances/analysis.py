@@ -86,7 +86,7 @@ class Analysis:
         Raises
         ------
         InvalidInputs
-            With all faults of the design and the request.
+            If the design or the request has faults; the error lists all of them.
         """
         written, wrong = build_graph(document, catalogues)
         raise_if(wrong)

@@ -210,7 +210,7 @@ def analysed(task: DesignTask, revision: int, body: str) -> ToleranceAnalysis:
     Raises
     ------
     InvalidInputs
-        With all faults of the design and the request.
+        If the design or the request has faults; the error lists all of them.
     """
     document, catalogues = task.read()
     analysis = Analysis.of(document, catalogues, ToleranceIn.model_validate_json(body).question())

@@ -1,4 +1,4 @@
-"""Find the toleranced values of a design, and those of them that an analysis can vary."""
+"""Find the toleranced values of a design, and decide which of them an analysis can vary."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def varied(graph: Graph, behind: Collection[Cell]) -> tuple[list[TolerancedVaria
 
 
 def _factor(cell: Cell, typed: TypedQuantity) -> Factor | str:
-    """Return a toleranced value as a factor, or the reason why it cannot be one."""
+    """Return a toleranced value as a factor of the analysis, or the reason why it cannot be varied."""
     tolerance, value = typed.tolerance, typed.si
     assert tolerance is not None
     lower, upper = tolerance.lower, tolerance.upper

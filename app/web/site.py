@@ -18,6 +18,7 @@ from app.web.compare import routes as compare
 from app.web.design import actions
 from app.web.design import routes as design
 from app.web.designs import routes as designs
+from app.web.engine_bearings import routes as engine_bearings
 from app.web.explanation import routes as explanation
 from app.web.faults import routes as faults
 from app.web.home import routes as home
@@ -54,6 +55,8 @@ ROUTERS = (
     template.router,
     solve.router,
     model.router,
+    engine_bearings.router,
+    engine_bearings.forms,
     new_step.router,  # before the designs: `new` is not the id of one
     design.router,
     actions.router,

@@ -1,8 +1,8 @@
-"""The worker of a server on one machine: the functions of a job share one process, which ends with the job.
+"""The worker of a server on one machine: the functions of a job share one process.
 
-If a job ran only marked functions (`app.workers.base.may_share`), its process is kept for the next such job,
-because starting a process costs more than building a small solid: the fork, and the parts that the kernel
-loads at first use.
+The process ends with the job, unless all functions of the job are marked with `app.workers.base.may_share`:
+then it is kept for the next such job. Starting a process costs more than building a small solid: it must be
+forked, and the kernel then loads some of its parts at first use.
 """
 
 import logging

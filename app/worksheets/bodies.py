@@ -26,7 +26,7 @@ def storable(text: str) -> str:
         If it is too long, or contains an invalid character.
     """
     if (size := len(text.encode("utf-8"))) > LONGEST_TEXT:
-        raise ValueError(f"a worksheet has at most {LONGEST_TEXT} bytes in UTF-8, not {size}")
+        raise ValueError(f"a worksheet may have at most {LONGEST_TEXT} bytes in UTF-8, not {size}")
     if (place := text.find("\0")) >= 0:
         line = text.count("\n", 0, place) + 1
         raise ValueError(f"a worksheet must not contain the character NUL; remove it from line {line}")

@@ -131,7 +131,7 @@ class Worksheets:
         OutOfOrder
             If the newest version is already released or reviewed.
         TestsFailed
-            With all faults and failed tests; the state does not change.
+            If there are faults or failed tests; the error lists all of them, and the state does not change.
         """
         row = self.newest(id, expected)
         _require(row, "draft", "tested")

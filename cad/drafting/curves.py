@@ -29,7 +29,7 @@ _SMOOTH = 5e-4  # of a curve's size: the greatest distance of a piece from it
 _POINT = 1e-6  # [mm]
 _ROUND = 2e-5  # of the radius: how near to a circle points lie that are an arc
 _JOINED = 2e-5  # [mm]
-_CORNER = 0.7  # [rad], a turn that is no corner
+_CORNER = 0.7  # [rad], a larger turn is a corner
 _FINER = 5  # pieces between two points of the kernel
 _DIGITS = 4  # to which two lines or circles are the same one
 

@@ -191,7 +191,7 @@ def section_label(page: Page, view: View, letter: str, room: Room, least: float 
     width = width_of(text, LETTERS)
     x, y = page.plan.paper(((left + right) / 2, high))
     x, y = x - width / 2, y + least
-    ways = sorted(product(range(-30, 31, 5), range(120)), key=lambda way: abs(way[0]) + way[1])
+    ways = sorted(product(range(-30, 31, 5), range(120)), key=lambda way: 3 * abs(way[0]) + way[1])
     boxes = ((x + aside, y + up, x + aside + width, y + up + LETTERS + 1.0) for aside, up in ways)
     place = room.first((box, (box[0], box[1] + 0.5)) for box in boxes)
     page.write(text, *(place or (x, y)), LETTERS)

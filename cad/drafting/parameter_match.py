@@ -68,7 +68,7 @@ def matched(
     for name, text in parameters.items():
         size = size_of(text)
         if size is None or size[0] == 0:
-            continue  # a word, a count, or what is not there
+            continue  # a word, a count, or a missing feature
         if fitting := _fitting(sizes[name], measures) if name in sizes else []:
             measure = _clearest(fitting, matches)
             alike = tuple(m for m in fitting if _kind(m) == _kind(measure) and m is not measure)

@@ -191,6 +191,6 @@ def _room(section: View, end: View, centres: Centres, plan: Plan) -> Room:
 
 
 def _on_paper(view: View, plan: Plan, right: float) -> Rectangle:
-    """Return the area of a view on the paper."""
+    """Return the rectangle that a view occupies on the paper."""
     low, high = (plan.paper(corner, right) for corner in view.box)
     return (*low, *high)

@@ -23,7 +23,7 @@ from cad.step import Body
 from cad.surfaces import Surface, X, Y, Z, look
 
 _DRAWN = 100.0  # [mm], the size at which edges are hidden: of a part of 5 m the kernel takes 25 times as long
-_LITTLE = 0.02  # of the depth on the other side: what is less is no side of its own
+_LITTLE = 0.02  # of the depth on the other side: a smaller distance does not form a side of its own
 
 
 @dataclass(frozen=True)

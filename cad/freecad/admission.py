@@ -58,7 +58,7 @@ def admitted(content: bytes) -> bytes:
     """
     parts = dict(_unpacked(content))
     if DOCUMENT not in parts:
-        raise UnreadableModel("not_freecad", f"it has no {DOCUMENT}: it is not a file of FreeCAD (.FCStd)")
+        raise UnreadableModel("not_freecad", f"it has no {DOCUMENT}: it is not a FreeCAD file (.FCStd)")
     named = _Document().read(parts[DOCUMENT])
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w") as package:
@@ -86,7 +86,7 @@ def _unpacked(content: bytes) -> Iterator[tuple[str, bytes]]:
                     read = opened.read(left + 1)
                 left -= len(read)
                 if left < 0:
-                    what = f"its parts have more than {MOST_BYTES // 2**20} MiB unpacked"
+                    what = f"its parts are larger than {MOST_BYTES // 2**20} MiB when unpacked"
                     raise UnreadableModel("too_large", f"{what}: remove shapes that the model does not need")
                 yield part.filename, read
     except _DAMAGES as error:
@@ -126,7 +126,7 @@ class _Document:
             If the document is damaged, or one of its elements is refused.
         """
         if len(text) > LONGEST_DOCUMENT:
-            what = f"its {DOCUMENT} has more than {LONGEST_DOCUMENT // 2**20} MiB"
+            what = f"its {DOCUMENT} is larger than {LONGEST_DOCUMENT // 2**20} MiB"
             raise UnreadableModel("too_large", f"{what}: split the model")
         if b"\0" in text[:4] or text[:2] in (b"\xff\xfe", b"\xfe\xff"):
             raise self._of_another_encoding()

@@ -405,14 +405,14 @@ def require_same_ends(document: Any, there: Census, at_import: dict[str, Any]) -
     for name, count in found.items():
         label = document.getObject(name).Label
         if name not in wanted:
-            said = f"{label} is a part at these values, but was none at the import"
+            said = f"{label} is a part at these values, but was not one at the import"
             raise Refused("other_ends", f"{said}: {OTHER_VALUES}")
         if count != wanted[name]:
             said = f"{label} has {count} solids at these values, but had {wanted[name]} at the import"
             raise Refused("other_ends", f"{said}: {OTHER_VALUES}")
     for name in wanted:
         if name not in found:
-            said = f"{document.getObject(name).Label} is no part at these values"
+            said = f"{document.getObject(name).Label} is not a part at these values"
             raise Refused("other_ends", f"{said}, but was one at the import: {OTHER_VALUES}")
 
 

@@ -67,7 +67,7 @@ class Rod:
         return float(away(half, middle, self.lean)), float(away(half, middle - self.distance, self.lean))
 
     def fillets(self) -> tuple[Point, Point]:
-        """Return the axes of the fillets of the side +x, at the big end and at the small end."""
+        """Return the axes of the two fillets on the +x side: at the big end and at the small end."""
         low, high = self.side()
         above = self._from(self.distance, high + self.small_fillet, -self._top)
         if self.big_end.rod.is_square:

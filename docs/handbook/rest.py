@@ -39,20 +39,21 @@ def page(document: dict[str, Any]) -> str:
 
 
 def _groups(document: dict[str, Any]) -> Iterator[tuple[str, list[dict[str, Any]]]]:
-    """Calls by tag, in the order of the document."""
+    """Calls by tag, in the order of the document's tags."""
     calls = [
         _call(method, path, operation)
         for path, item in document["paths"].items()
         for method, operation in item.items()
         if method in METHODS
     ]
-    for tag in dict.fromkeys(call["tag"] for call in calls):
-        yield tag, [call for call in calls if call["tag"] == tag]
+    for tag in document["tags"]:
+        yield tag["name"], [call for call in calls if call["tag"] == tag["name"]]
 
 
 def _call(method: str, path: str, operation: dict[str, Any]) -> dict[str, Any]:
     return {
-        "tag": (operation.get("tags") or ["other"])[0],
+        "tag": operation["tags"][0],
+        "title": operation["summary"],
         "method": method.upper(),
         "path": path,
         "text": operation.get("description") or operation.get("summary", ""),

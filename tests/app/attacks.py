@@ -20,7 +20,7 @@ LENGTH = {"unknown": "length", "between": ["1 mm", "4 mm"], "target": {"double.t
 GIVEN = {
     "inputs": {},
     "unknown": "length",
-    "bounds": ["1 mm", "4 mm"],
+    "between": ["1 mm", "4 mm"],
     "target": {"twice_the_length": "5 mm"},
 }
 FILM = {"inputs": {

@@ -137,7 +137,7 @@ class TestCase:
     def test_the_clearance_of_a_rise_of_40_K(self, http, target):
         body = {
             "inputs": {name: value for name, value in CASE.items() if name != "diametral_clearance"},
-            "unknown": "diametral_clearance", "bounds": ["0.02 mm", "0.2 mm"],
+            "unknown": "diametral_clearance", "between": ["0.02 mm", "0.2 mm"],
             "target": {"temperature_rise": target},
         }  # fmt: skip
         (root,) = http.post(f"{OIL}/solve", json=body).json()["roots"]
@@ -253,7 +253,7 @@ class TestTargets:
     def test_a_template_is_solved_for_a_rise(self, http, target):
         body = {
             "inputs": {n: v for n, v in FILM.items() if n != "diametral_clearance"},
-            "unknown": "diametral_clearance", "bounds": ["0.02 mm", "0.2 mm"],
+            "unknown": "diametral_clearance", "between": ["0.02 mm", "0.2 mm"],
             "target": {"temperature_rise": target},
         }  # fmt: skip
         answer = http.post(f"{OIL}/solve", json=body)

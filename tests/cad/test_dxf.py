@@ -42,6 +42,7 @@ OF_NONE = {
     "free_spread",
     "reduction_height",
     "oil_groove_angle",
+    "reduction_height",
 }
 """Sizes of features that a bare shell has not; its groove goes from joint to joint."""
 QUICK_MODELS = DRAWN

@@ -29,7 +29,7 @@ LENGTH = "40 mm ± 0.1 mm, in table"
 CARRIED_BY_NONE = {
     "bearing_assembly": {"diametral_clearance"},  # between two diameters of two parts
     "crank_throw": {"journal_length"},  # the solid has half of each journal
-    "plain_bearing": {"free_spread"},  # not seen on a fitted shell
+    "plain_bearing": {"free_spread", "wall_reduction", "reduction_height"},  # of a fitted, concentric shell
 }
 """Lengths of the library that no face has."""
 

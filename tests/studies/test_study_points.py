@@ -71,9 +71,9 @@ def test_places_and_values_belong_together():
 @pytest.mark.parametrize(
     ("make", "code"),
     [
-        (lambda: Interval("clearance", 2.0, 1.0), "bounds"),
-        (lambda: Interval("clearance", 0.0, float("inf")), "bounds"),
-        (lambda: Interval("clearance", 0.0, 1.0, "log"), "bounds"),
+        (lambda: Interval("clearance", 2.0, 1.0), "not_ascending"),
+        (lambda: Interval("clearance", 0.0, float("inf")), "not_ascending"),
+        (lambda: Interval("clearance", 0.0, 1.0, "log"), "spacing"),
         (lambda: Values("clearance", ()), "values"),
         (lambda: Values("clearance", (1.0, float("nan"))), "values"),
         (lambda: Grid(Space((Interval("clearance", 0.0, 1.0),)), {"clearance": 1}).count, "steps"),

@@ -153,7 +153,7 @@ async def solve_template(
     body: SolveIn,
     prefer: Prefer = None,
 ) -> Response:
-    """Find the input that gives a wanted output, between bounds."""
+    """Find the input that gives a wanted output, in an interval."""
     services = services_of(request)
     cls = await services.catalogues.tried(id, number)
     seconds = solving_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs, body.target)

@@ -81,7 +81,7 @@ def _inputs(request: Request) -> dict[str, Raw]:
         if name not in RESERVED:
             given.setdefault(name, []).append(text)
     if len(given) > MOST_INPUTS or any(len(texts) > MOST_POINTS for texts in given.values()):
-        detail = f"an address has at most {MOST_INPUTS} inputs of {MOST_POINTS} points each; send a body"
+        detail = f"an address may have at most {MOST_INPUTS} inputs of {MOST_POINTS} points each; send a body"
         raise InvalidInputs([Fault("query", "too_many", detail)])
     twice = [name for name in RESERVED if len(request.query_params.getlist(name)) > 1]
     if twice:

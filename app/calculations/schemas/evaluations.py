@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, Generic, Literal, Self, TypeVar
 
 from pydantic import ConfigDict, Field, JsonValue, WithJsonSchema
 from pydantic.config import JsonDict
@@ -10,6 +10,7 @@ from pydantic.config import JsonDict
 from app.presentation.units import System
 from app.schemas.answers import Answer, Measured, Quantity, Shown, Value, Values, Version, Warning
 from app.schemas.criteria import Criterion, Verdict
+from app.schemas.slopes import slope_between
 
 
 class CalculatedBy(Version):
@@ -93,12 +94,25 @@ class Evaluation(Results):
 class Root(Quantity):
     """A value of the unknown at which the output reaches its target."""
 
-    slope: Literal[-1, 0, 1] = Field(
-        description="sign of the output's slope; 0 where it is flat or only touches the target"
+    crossing: Literal["rises", "falls", "touches"] = Field(
+        description="how the output meets the target; `touches` where it is flat or does not cross"
     )
+    slope: Quantity | None = Field(
+        description="change of the output per change of the unknown, at the level of `curve`; null for the "
+        "reason in `reason`"
+    )
+    reason: str | None = Field(None, description="why there is no slope; absent if there is one")
     level: str | None = Field(description="the level of fidelity at which it was calculated")
     error: float | None = Field(description="estimated relative error of the output; null if unknown")
     confirmed: bool = Field(description="false if only the level of the curve found this solution")
+
+    def slope_per(self, over: str, under: str) -> Self:
+        """Return the root with its slope in the unit `over` per `under`."""
+        slope = self.slope and slope_between(over, under, self.slope)
+        return self.model_copy(update={"slope": slope})
+
+
+AnyRoot = TypeVar("AnyRoot", bound=Root)
 
 
 class Jump(Quantity):
@@ -114,10 +128,10 @@ class Jump(Quantity):
 
 
 class TracedCurve(Answer):
-    """The output as a function of the unknown between its bounds, at one level of fidelity."""
+    """The output as a function of the unknown in the interval, at one level of fidelity."""
 
     x: Values = Field(
-        description="the unknown, ascending, in even steps, or logarithmic if the bounds span a decade; "
+        description="the unknown, ascending, in even steps, or logarithmic if it spans a decade; "
         "an expensive level has only the solutions and one value on each side of each solution"
     )
     y: Shown = Field(description="the output; null where it has no value")
@@ -125,20 +139,34 @@ class TracedCurve(Answer):
     level: str | None = Field(description="the level of fidelity of all points")
 
 
-class Solution(Answer):
+class Solved(Answer, Generic[AnyRoot]):
+    """Every value of an unknown that gives a wanted output, and the curve on which they were found."""
+
+    roots: list[AnyRoot] = Field(description="every crossing of the target within the interval, ascending")
+    touching: list[AnyRoot] = Field(description="extrema that just reach the target, ascending")
+    jumps: list[Jump] = Field(description="values at which the output jumps across the target")
+    curve: TracedCurve = Field(description="the curve that was searched")
+    finer: list[TracedCurve] = Field(
+        description="the curve of each finer level at which solutions were confirmed"
+    )
+    warnings: list[Warning]
+
+    def in_units(self, system: System) -> Self:
+        """Return the solution in a system of units; a slope has the units of the curve."""
+        shown = super().in_units(system)
+        units = shown.curve.y.unit or "1", shown.curve.x.unit
+        return shown.model_copy(
+            update={
+                "roots": [root.slope_per(*units) for root in shown.roots],
+                "touching": [root.slope_per(*units) for root in shown.touching],
+            }
+        )
+
+
+class Solution(Solved[Root]):
     """The inputs that give a wanted output."""
 
     unknown: Shown = Field(description="the lowest value that gives the target; see `roots` for the others")
-    warnings: list[Warning]
-    roots: list[Root] = Field([], description="every crossing of the target within the bounds, ascending")
-    touching: list[Root] = Field([], description="extrema that just reach the target, ascending")
-    jumps: list[Jump] = Field([], description="values at which the output jumps across the target")
-    curve: TracedCurve | None = Field(
-        None, description="the curve that was searched; absent in answers of earlier program versions"
-    )
-    finer: list[TracedCurve] = Field(
-        [], description="the curve of each finer level at which solutions were confirmed"
-    )
     evaluation: Evaluation = Field(description="evaluation at `unknown`")
 
 

@@ -318,7 +318,7 @@ def _admitted(
     Raises
     ------
     FaultyText
-        With code `not_finite`, if the column has one value for all rows and it is not finite.
+        If the column has one value for all rows and it is not finite; the code is `not_finite`.
     """
     if not column.is_row:
         if not np.all(np.isfinite(column.value)):

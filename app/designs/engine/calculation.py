@@ -193,8 +193,8 @@ class Calculation:
         Raises
         ------
         FaultyText
-            With code `no_value`, if the analysis gives a reason instead of a value, or the build has no
-            such measurement.
+            If the analysis gives a reason instead of a value, or the build has no such measurement; the code
+            is `no_value`.
         """
         scale = unit(measured_unit(reference))
         if reference.analysis is None:

@@ -115,7 +115,7 @@ def scattered(count: int, parts: Iterable[tuple[Indices | slice, Column]]) -> Co
     Raises
     ------
     FaultyText
-        With code `shape`, if the parts have curves of different lengths.
+        If the parts have curves of different lengths; the code is `shape`.
     """
     pieces = list(parts)
     try:

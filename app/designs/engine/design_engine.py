@@ -96,8 +96,8 @@ class DesignEngine:
         Raises
         ------
         InvalidInputs
-            With all faults of the design, or naming the places that cannot vary, with the
-            codes `unknown_name`, `not_a_number`, `follows_from`, `not_varied`, `no_relation`,
+            If the design has faults, or if places cannot vary. The error lists all of them; those of places
+            have the codes `unknown_name`, `not_a_number`, `follows_from`, `not_varied`, `no_relation`,
             `needs_solids` or `shape`.
         """
         written, faults = build_graph(document, catalogues)

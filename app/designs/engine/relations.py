@@ -2,7 +2,7 @@
 
 A relation whose values are equal in all rows is calculated once. If a relation is a single name, or a name
 plus a constant, its result has the tolerance of that name. Other results of toleranced values also vary
-within an interval, which is no manufacturing tolerance: a tolerance analysis reports the interval, and
+within an interval, which is not a manufacturing tolerance: a tolerance analysis reports the interval, and
 drawings and STEP files omit it.
 """
 
@@ -37,7 +37,7 @@ def related(relation: Relation, uses: Mapping[str, Column]) -> Column:
     Raises
     ------
     FaultyText
-        With code `shape` if curves have different lengths, or `index` if no row has a value.
+        If curves have different lengths (code `shape`), or no row has a value (code `index`).
     """
     if not any(column.is_row for column in uses.values()):
         return Column(relation.value({name: column.value for name, column in uses.items()}))
@@ -90,8 +90,8 @@ def column_of(node: Node, columns: Mapping[str, Column]) -> Column:
     Raises
     ------
     FaultyText
-        With code `shape`, if a single value is used where a list is needed, or a list where a single value
-        is needed.
+        If a single value is used where a list is needed, or a list where a single value is needed; the code
+        is `shape`.
     """
     match node:
         case Constant(value=value):
@@ -179,7 +179,7 @@ def limit_values(values: int) -> None:
     Raises
     ------
     FaultyText
-        With code `too_many_values`.
+        The code is `too_many_values`.
     """
     if values > MOST_VALUES:
         message = f"this gives {values} values; one place of a design may have at most {MOST_VALUES}"
@@ -192,7 +192,7 @@ def limit_operations(operations: int) -> None:
     Raises
     ------
     FaultyText
-        With code `too_many_values`.
+        The code is `too_many_values`.
     """
     if operations > MOST_OPERATIONS:
         message = f"the relations up to here need {operations} operations on single values"

@@ -358,5 +358,5 @@ def noted(body: JsonObject) -> tuple[JsonObject, str | None]:
     patch = {key: value for key, value in body.items() if key != "note"}
     note = body.get("note")
     if note is not None and not (isinstance(note, str) and len(note) <= LONGEST_NOTE):
-        raise InvalidInputs([Fault("note", "string", f"a note has at most {LONGEST_NOTE} characters")])
+        raise InvalidInputs([Fault("note", "string", f"a note may have at most {LONGEST_NOTE} characters")])
     return patch, note

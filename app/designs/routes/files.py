@@ -45,7 +45,7 @@ from cad.file_kinds import DRAWINGS, MEDIA_TYPES, plain_kind, with_deflection, w
 from cad.file_names import plain_name
 from cad.stamp import STAMPED, Stamp, stamped, takes_stamp
 
-router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
+router = APIRouter(prefix="/api/v1/designs", tags=["files"], route_class=StrictRoute)
 
 FILES: RouteOptions = {
     "dependencies": [KNOWN_NAMES],

@@ -26,7 +26,7 @@ from cad.file_kinds import MEDIA_TYPES
 from cad.file_names import name as wide_name
 from cad.file_names import plain_name
 
-router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
+router = APIRouter(prefix="/api/v1/designs", tags=["files"], route_class=StrictRoute)
 
 Painted = Literal["glb", "png"]
 PAINTED: RouteOptions = {

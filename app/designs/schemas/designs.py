@@ -86,6 +86,13 @@ class DesignTable(Answer):
     changes: bool = Field(False, description="whether each row also shows its change from the first row")
 
 
+class AssumedValue(Answer):
+    """A proposed value that a parameter still has."""
+
+    value: Given
+    source: str = Field(description="where the proposal comes from")
+
+
 class DesignSummary(Answer):
     """A design in a list."""
 
@@ -132,6 +139,9 @@ class Design(Answer):
     )
     table: DesignTable | None = Field(
         None, description="the table of results; absent if its columns are the main results of the templates"
+    )
+    assumed: dict[str, AssumedValue] = Field(
+        {}, description="parameters whose values were proposed and not changed; absent if there are none"
     )
     results: DesignResults | None = Field(
         None, description="absent while the design is calculated, if it failed, and with `return=minimal`"
@@ -234,6 +244,9 @@ class Revision(Answer):
     steps: dict[str, RevisionStep]
     models: dict[str, RevisionModel]
     iterations: list[Round]
+    assumed: dict[str, AssumedValue] = Field(
+        {}, description="parameters whose values were proposed and not changed; absent if there are none"
+    )
     rounded: list[RoundedValue] = Field([], description="rounded values; absent if there are none")
     warnings: list[Warning] = Field(
         [], description="warnings about parameters of the design and of its models"

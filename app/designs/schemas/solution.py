@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from app.calculations.schemas.evaluations import Jump, Root, TracedCurve
-from app.schemas.answers import Answer, Measured, Shown, Warning
+from app.calculations.schemas.evaluations import Root, Solved
+from app.schemas.answers import Measured, Shown
 from app.schemas.criteria import Word
 
 
@@ -27,20 +27,12 @@ class Target(Measured):
     unit: str
 
 
-class DesignSolution(Answer):
+class DesignSolution(Solved[DesignRoot]):
     """Every value of one parameter or input that gives a requested output; nothing is saved."""
 
     revision: int = Field(description="the revision that was solved")
     unknown: str = Field(description="the parameter or input that was varied")
     target: Target
-    roots: list[DesignRoot] = Field(description="every crossing of the target within the bounds, ascending")
-    touching: list[DesignRoot] = Field(description="extrema that just reach the target, ascending")
-    jumps: list[Jump] = Field(description="points at which the output jumps across the target")
-    curve: TracedCurve = Field(description="the curve that was searched")
-    finer: list[TracedCurve] = Field(
-        [], description="the curve at the levels that confirmed the solutions, if these are finer"
-    )
-    warnings: list[Warning]
     levels: dict[str, str | None] = Field(description="the level of each step along the curve")
     finer_levels: dict[str, str | None] = Field(
         {}, description="the level of each step along the finer curve, if there is one"

@@ -31,7 +31,7 @@ def read_csv(content: bytes) -> Grid:
         If it is too long, not UTF-8, or its quotes cannot be parsed.
     """
     if len(content) > MOST_BYTES:
-        raise _wrong("A1", "too_long", f"a CSV file has at most {MOST_BYTES // 10**6} MB")
+        raise _wrong("A1", "too_long", f"a CSV file may be at most {MOST_BYTES // 10**6} MB in size")
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -60,7 +60,7 @@ def _rows(text: str, separator: str) -> list[list[str]]:
     try:
         for row in csv.reader(io.StringIO(text, newline=""), delimiter=separator):
             if len(rows) > LAST_ROW and not any(row):
-                continue  # blank rows at the end are no variants
+                continue  # blank rows at the end are not variants
             rows.append(row)
             if len(rows) > 2 * LAST_ROW:
                 break  # enough rows to refuse the file

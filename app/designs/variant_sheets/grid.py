@@ -60,14 +60,14 @@ def _trimmed(cells: list[str]) -> list[str]:
 def _refuse_large(rows: Sequence[Sequence[str]]) -> None:
     faults = []
     if len(rows) > LAST_ROW:
-        place, message = address(len(rows) - 1, 0), f"a table of variants ends by row {LAST_ROW}"
+        place, message = address(len(rows) - 1, 0), f"a table of variants must end by row {LAST_ROW}"
         faults.append(Fault(place, "too_many_rows", f"{message}; remove the rows below"))
     for number, row in enumerate(rows):
         if len(row) > MOST_COLUMNS:
-            place, message = address(number, len(row) - 1), f"a table has at most {MOST_COLUMNS} columns"
+            place, message = address(number, len(row) - 1), f"a table may have at most {MOST_COLUMNS} columns"
             faults.append(Fault(place, "too_many_columns", message))
         faults += [
-            Fault(address(number, column), "too_long", f"a cell has at most {LONGEST_CELL} characters")
+            Fault(address(number, column), "too_long", f"a cell may have at most {LONGEST_CELL} characters")
             for column, cell in enumerate(row)
             if len(cell) > LONGEST_CELL
         ]
@@ -80,7 +80,7 @@ def refuse(faults: Sequence[Fault]) -> None:
     Raises
     ------
     InvalidInputs
-        With at most `MOST_FAULTS` of them.
+        If there are faults; the error lists at most `MOST_FAULTS` of them.
     """
     if faults:
         raise InvalidInputs(faults[:MOST_FAULTS])
@@ -104,6 +104,6 @@ def column_of(letters: str) -> int:
 
 
 def cell_of(address: str) -> tuple[int, int] | None:
-    """Return the row and column of an address, counted from 0: (3, 3) for `D4`; None if it is no address."""
+    """Return the row and column of an address, counted from 0: (3, 3) for `D4`; None if it is not one."""
     match = _ADDRESS.fullmatch(address)
     return (int(match["row"]) - 1, column_of(match["column"])) if match else None

@@ -104,7 +104,7 @@ def _refuse_many(grid: Grid, skipped: Collection[int]) -> None:
     """Raise InvalidInputs if there are more variants or values than a design may have."""
     filled = [[at for at, cell in enumerate(row) if cell and at not in skipped] for row in grid.rows]
     if (count := sum(map(bool, filled[2:]))) > MOST_VARIANTS:
-        message = f"a design has at most {MOST_VARIANTS} variants, not {count}"
+        message = f"a design may have at most {MOST_VARIANTS} variants, not {count}"
         refuse([Fault("A1", "too_many_rows", message)])
     if sum(map(len, filled)) > MOST_OVERRIDES:
         message = f"the variants of a design override at most {MOST_OVERRIDES} values together"

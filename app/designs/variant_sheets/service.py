@@ -53,7 +53,7 @@ def save_sheet(
     StaleRevision
         If `expected` (an If-Match) is not the newest revision.
     InvalidInputs
-        With every faulty cell by its address; nothing is saved then.
+        If cells are faulty; the error lists all of them by address, and nothing is saved.
     """
     grid = read_sheet(content, kind)
     with designs.database.read() as session:

@@ -70,7 +70,7 @@ def _check_size(content: bytes) -> None:
     `zipfile` never unpacks more of a part than the archive states, so the stated sizes can be added up.
     """
     if len(content) > MOST_BYTES:
-        raise _wrong("too_long", f"an XLSX file has at most {MOST_BYTES // 10**6} MB")
+        raise _wrong("too_long", f"an XLSX file may be at most {MOST_BYTES // 10**6} MB in size")
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             parts = archive.infolist()

@@ -21,7 +21,7 @@ def checked(
 ) -> tuple[list[Outcome], list[Fault]]:
     """Return the variants of a document, calculated as far as possible, and the faults of the table.
 
-    A tolerance that a `saved` document has already is no fault.
+    A tolerance that a `saved` document already has is not a fault.
     """
     if faults := list(too_many_cells(document)):
         return [], faults
@@ -49,9 +49,8 @@ def too_many_cells(document: Document) -> Iterator[Fault]:
     cells = len(document.parameters) + sum(map(len, blocks))
     if cells * len(document.variants) > MOST_CELLS:
         most = MOST_CELLS // cells
-        detail = (
-            f"a design that sets {cells} values has at most {most} variants, not {len(document.variants)}"
-        )
+        count = len(document.variants)
+        detail = f"a design that sets {cells} values may have at most {most} variants, not {count}"
         yield Fault("variants", "too_many_values", detail)
 
 

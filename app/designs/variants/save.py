@@ -23,7 +23,7 @@ def replace_variants(
     StaleRevision
         If `expected` (an If-Match) is not the newest revision.
     InvalidInputs
-        With all faults of the table; nothing is saved then.
+        If the table has faults; the error lists all of them, and nothing is saved.
     """
     with designs.database.read() as session:
         number, document, *_ = repository.newest(session, id)

@@ -111,6 +111,6 @@ def read(content: bytes) -> Manifest:
     Raises
     ------
     UnreadableModel
-        With all faults.
+        If there are faults; the error lists all of them.
     """
     return read_manifest(Manifest, content, "the manifest for Creo")

@@ -176,7 +176,7 @@ class CreoDrawing:
 
     @contextmanager
     def _session(self, cancelled: threading.Event) -> Iterator[CreoSession]:
-        """Open a session once no other one is open; close it at the end without saving changes."""
+        """Wait until no other session is open, then open one; close it at the end without saving changes."""
         end = time.monotonic() + self.seconds
         while not self._turn.acquire(timeout=_GLANCE):
             if cancelled.is_set():

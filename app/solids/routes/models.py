@@ -193,7 +193,7 @@ async def read_file_of_build(
     client: TheClient,
     prefer: Annotated[str | None, Header()] = None,
 ) -> Response:
-    """Return a file of a build outside of designs, so a drawing leaves the fields for a design empty.
+    """Return a file of a build outside a design, so a drawing leaves the fields for a design empty.
 
     The file is created at the first request, and stored.
     """

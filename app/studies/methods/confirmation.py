@@ -82,7 +82,7 @@ class Run:
     Raises
     ------
     InvalidInputs
-        With code `all_refused`, if no row of the scan has results.
+        If no row of the scan has results; the code is `all_refused`.
     """
 
     def __init__(self, problem: Problem, explore: Answer, confirm: Answer, seed: int, within: float) -> None:

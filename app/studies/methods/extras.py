@@ -14,7 +14,7 @@ def extra(module: str) -> ModuleType:
     Raises
     ------
     InvalidInputs
-        With code `not_installed`, if the package is missing.
+        If the package is missing; the code is `not_installed`.
     """
     try:
         return import_module(module)

@@ -84,7 +84,7 @@ def pareto_front(
     Raises
     ------
     InvalidInputs
-        With code `all_refused`, if no row of the scan has results; with `not_installed` without pymoo.
+        If no row of the scan has results (code `all_refused`), or pymoo is missing (code `not_installed`).
     """
     run = Run(problem, explore, confirm, seed, within)
     done: list[tuple[Round, ...]] = []

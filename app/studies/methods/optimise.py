@@ -90,7 +90,7 @@ def optimise(
     Raises
     ------
     InvalidInputs
-        With code `all_refused`, if no row of the scan has results.
+        If no row of the scan has results; the code is `all_refused`.
     """
     run = Run(problem, explore, confirm, seed, within)
     done: list[Round] = []

@@ -52,7 +52,7 @@ class Grid:
     Raises
     ------
     InvalidInputs
-        With code `steps`, if an interval has fewer than two steps.
+        If an interval has fewer than two steps; the code is `steps`.
     """
 
     space: Space

@@ -46,7 +46,7 @@ def scan(problem: Problem, answer: Answer, seed: int) -> Scan:
     Raises
     ------
     InvalidInputs
-        With code `all_refused`, if no row has results.
+        If no row has results; the code is `all_refused`.
     """
     unit = _places(problem.space, seed)
     columns = answer(problem.space.at(unit))

@@ -29,7 +29,7 @@ def slopes(points: Local, output: str, y: Array) -> Slopes:
     Raises
     ------
     InvalidInputs
-        With code `refused_rows`, if a row has no value.
+        If a row has no value; the code is `refused_rows`.
     """
     _complete(output, y, len(y))
     return slopes_at(points, y)
@@ -85,7 +85,7 @@ def effects(points: MorrisPoints, output: str, y: Array) -> Effects:
     Raises
     ------
     InvalidInputs
-        With code `refused_rows`, if a row has no value.
+        If a row has no value; the code is `refused_rows`.
     """
     _complete(output, y, points.count)
     analyse = extra("SALib.analyze.morris").analyze
@@ -107,7 +107,7 @@ class SobolPoints:
     Raises
     ------
     InvalidInputs
-        With code `points`, if `base` is not a power of two.
+        If `base` is not a power of two; the code is `points`.
     """
 
     space: Space
@@ -157,8 +157,8 @@ def indices(points: SobolPoints, output: str, y: Array) -> Indices:
     Raises
     ------
     InvalidInputs
-        With code `refused_rows`, if a row has no value, because a single one would make every index NaN.
-        With code `constant`, if the output does not vary.
+        If a row has no value, because a single one would make every index NaN; the code is `refused_rows`.
+        If the output does not vary; the code is `constant`.
     """
     _complete(output, y, points.count)
     if np.ptp(y) <= np.finfo(float).eps * np.abs(y).max():

@@ -22,7 +22,8 @@ class Interval:
     Raises
     ------
     InvalidInputs
-        With code `bounds`, if the bounds are not finite or not in order, or if log spacing has a bound ≤ 0.
+        If the bounds are not finite or not in order (code `not_ascending`), or if log spacing has a bound ≤ 0
+        (code `spacing`).
     """
 
     name: str
@@ -32,9 +33,11 @@ class Interval:
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.low) and math.isfinite(self.high) and self.low < self.high):
-            raise _bounds(self.name, "the lower bound must be less than the upper one, both finite")
+            raise _refusal(
+                self.name, "not_ascending", "the lower bound must be less than the upper one, both finite"
+            )
         if self.spacing == "log" and self.low <= 0:
-            raise _bounds(self.name, "spacing `log` needs bounds above zero")
+            raise _refusal(self.name, "spacing", "spacing `log` needs bounds above zero")
 
     def at(self, u: Array) -> Array:
         """Return the values [SI] at positions `u` from 0 to 1."""
@@ -66,7 +69,7 @@ class Values:
     Raises
     ------
     InvalidInputs
-        With code `values`, if the list is empty or a value is not finite.
+        If the list is empty or a value is not finite; the code is `values`.
     """
 
     name: str
@@ -127,5 +130,5 @@ def _by_column(columns: Sequence[Array], like: Array) -> Array:
     return np.stack(columns, axis=-1) if columns else np.empty_like(like)
 
 
-def _bounds(name: str, detail: str) -> InvalidInputs:
-    return InvalidInputs([Fault(name, "bounds", f"{name}: {detail}")])
+def _refusal(name: str, code: str, detail: str) -> InvalidInputs:
+    return InvalidInputs([Fault(name, code, f"{name}: {detail}")])

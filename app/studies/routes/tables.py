@@ -28,7 +28,7 @@ KINDS: dict[str, FileKind] = {
 
 
 def _kind(scope: Scope) -> FileKind | None:
-    """Return the kind of file in the body of a request; None if it is no file."""
+    """Return the kind of file in the body of a request; None if it is not a file."""
     given = Headers(scope=scope).get("content-type", "")
     return KINDS.get(given.partition(";")[0].strip().lower())
 

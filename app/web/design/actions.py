@@ -70,17 +70,19 @@ async def _with_step(
     try:
         return await _created(services, {**document, "steps": {step.name: step.plain()}})
     except Refused as refused:
-        return _step_again(request, step, "/designs", beside(typed), refused)
+        return _step_again(request, step, "", beside(typed), refused)
 
 
 def _step_again(
-    request: Request, step: NewStep, action: str, hidden: Mapping[str, str], refused: Refused
+    request: Request, step: NewStep, design: str, hidden: Mapping[str, str], refused: Refused
 ) -> Response:
-    """Return the form of a step that was refused."""
+    """Return the form of a step that was refused; without a design, the step is the first of a new one."""
     if refused.status != ILL_NAMED:
         raise refused
     notice = None if refused.faults else f"Nothing was saved: {refused.problem.detail}"
-    return step_page(request, step, action, hidden, Refusal(step.typed, refused.faults), notice)
+    refusal = Refusal(step.typed, refused.faults)
+    action = f"/designs/{design}/blocks" if design else "/designs"
+    return step_page(request, step, action, hidden, refusal, notice, design=design)
 
 
 async def _created(services: PageServices, document: Mapping[str, JsonValue]) -> Response:
@@ -140,7 +142,7 @@ async def _add_step(id: str, request: Request, services: PageServices, typed: Ma
         await services.change(id, typed.get("revision", ""), patch)
     except Refused as refused:
         hidden = {**beside(typed), "add": "template", "revision": typed.get("revision", "")}
-        return _step_again(request, step, f"/designs/{id}/blocks", hidden, refused)
+        return _step_again(request, step, id, hidden, refused)
     return go(f"/designs/{id}")
 
 

@@ -34,6 +34,7 @@ const draft = new Draft(form, JSON.parse(form.querySelector("[name=was]").value)
 const models = new Set([...document.querySelectorAll("[data-model]")].map((part) => part.dataset.model));
 const state = form.querySelector("[data-state]");
 const trouble = form.querySelector("[data-trouble]");
+const OWN = `own:${id}`; // the revision that another form of this page saves
 const MOST_LINKS = 5; // largest number of links to wrong fields
 const CONFLICT = 409; // the calculation was cancelled
 const patch = () => patchOf(draft.changed(), models);
@@ -47,6 +48,7 @@ const preview = live(
   (signal) => previewed(signal, isFollowing),
   ({ payload }) => {
     clear();
+    for (const notice of document.querySelectorAll("[data-sent-fault]")) notice.hidden = true; // it concerned the form as sent
     show(payload);
     state.textContent = [draft.keep() && "previewed, not saved", waiting(payload)].filter(Boolean).join("; ");
   },
@@ -162,6 +164,10 @@ form.querySelector("[data-discard]").addEventListener("click", () => {
   location.reload();
 });
 
+document.addEventListener("submit", ({ target }) => {
+  if (target !== form) sessionStorage.setItem(OWN, String(Number(revision) + 1));
+});
+
 form.addEventListener("submit", async (event) => {
   event.preventDefault();
   const changed = patch();
@@ -240,7 +246,8 @@ async function start() {
   startDrives();
   const from = draft.restore();
   if (from !== null) showDraft();
-  if (from !== null && from !== revision) tell(`Revision ${revision} was saved since you typed these changes; look at them once more.`);
+  const isOwn = sessionStorage.getItem(OWN) === revision; // this user saved it with another form of the page
+  if (from !== null && from !== revision && !isOwn) tell(`Revision ${revision} was saved since you typed these changes; look at them once more.`);
   const running = progress.dataset.job;
   if (running) regenerated(`/api/v1/jobs/${running}`).then(() => location.reload());
   const first = showFirst(from);

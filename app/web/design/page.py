@@ -217,13 +217,18 @@ async def _form(request: Request, services: PageServices, design: Design, refusa
     ]
     typed, faults = refusal.typed, refusal.faults
     values = (preview.parameters if preview else None) or {}
-    parameters = sheet.of_parameters(design.parameters, values, typed, faults, rounded)
+    parameters = sheet.of_parameters(design.parameters, values, typed, faults, rounded, _sources(design))
     return Form(revision, preview, parameters, steps, folded, parts, models, verdict, in_full)
 
 
 def by_name(rounded: Sequence[RoundedValue]) -> dict[str, RoundedValue]:
     """Return rounded values by their names."""
     return {value.name: value for value in rounded}
+
+
+def _sources(design: Design) -> dict[str, str]:
+    """Return the sources of the assumed parameters."""
+    return {name: one.source for name, one in design.assumed.items()}
 
 
 def _as_typed(design: Design) -> str:

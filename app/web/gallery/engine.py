@@ -10,6 +10,7 @@ from collections.abc import Sequence
 
 from pydantic import JsonValue
 
+from app.web.engine_bearings.document import SHELL, Bearing, bearings, film_step
 from app.web.gallery import train as gallery_train
 from app.web.gallery.train import THROWS, Train
 from templates.groups.petrol_engine import IN_LINE_FOUR
@@ -47,24 +48,7 @@ _OUTPUTS: list[JsonValue] = [
 ]  # fmt: skip
 
 
-def _bearings(mains: int, cylinders: int) -> dict[str, JsonValue]:
-    """Return a variant for every main bearing and every big-end bearing.
-
-    The groove of a main bearing is in the shell of the block; that of a big end is in the shell of the cap.
-    """
-    big_ends: dict[str, JsonValue] = {
-        f"big_end_{n}": {
-            "bearing": f"{n}",
-            "film.load_x": "= engine.crankpin_load_x[bearing]",
-            "film.load_y": "= engine.crankpin_load_y[bearing]",
-            "film.sleeve_speed": "= engine.rod_angular_velocity[bearing]",
-            "film.bearing_diameter": "= engine.crankpin_diameter + film.diametral_clearance",
-            "film.groove_start": "90 deg",
-            "film.bearing_width": "22 mm",
-        }
-        for n in range(1, cylinders + 1)
-    }
-    return {**{f"main_{n}": {"bearing": f"{n}"} for n in range(1, mains + 1)}, **big_ends}
+_BIG_END = Bearing("22 mm", "0.055 mm")
 
 
 def _places(between: str, cylinders: Sequence[float], webs: float) -> dict[str, JsonValue]:
@@ -87,7 +71,7 @@ def _document(
     places: dict[str, JsonValue],
     engine: dict[str, JsonValue],
     shaft: dict[str, JsonValue],
-    bearings: dict[str, JsonValue],
+    variants: dict[str, JsonValue],
     train: Train,
 ) -> dict[str, JsonValue]:
     """Return a design with a variant for each bearing.
@@ -112,38 +96,17 @@ def _document(
                 "outputs": _OUTPUTS,
                 "limits": {"permissible_main_load": "60 kN", "permissible_crankpin_load": "60 kN"},
             },
-            "film": {
-                "template": "oil_film_cycle",
-                "version": 1,
-                "level": "supplied",
-                "inputs": {
-                    "crank_angle": "= engine.crank_angle",
-                    "load_x": "= engine.elastic_main_load_x[bearing]",
-                    "load_y": "= engine.elastic_main_load_y[bearing]",
-                    "load_sense": "sleeve_on_journal",
-                    "speed": "= engine.speed",
-                    "bearing_diameter": "= engine.journal_diameter + film.diametral_clearance",
-                    "bearing_width": "20 mm",
-                    "diametral_clearance": "0.055 mm",
-                    "dynamic_viscosity": "10 mPa*s",
-                    "permissible_film": "1 um",
-                    "groove_width": "3 mm",
-                    "groove_start": "-90 deg",
-                    "groove_extent": "180 deg",
-                    "supply_pressure": "4 bar",
-                },
-            },
+            "film": film_step(
+                Bearing("20 mm", "0.055 mm"),
+                dynamic_viscosity="10 mPa*s",
+                permissible_film="1 um",
+                groove_width="3 mm",
+                supply_pressure="4 bar",
+            ),
             **gallery_train.steps(train),
         },
         "models": {
-            "shell": {
-                "id": "plain_bearing",
-                "version": 1,
-                "parameters": {
-                    "inner_diameter": "= film.bearing_diameter",
-                    "width": "= film.bearing_width",
-                },
-            },
+            "shell": SHELL,
             "crankshaft": {
                 "id": "crankshaft",
                 "version": 1,
@@ -151,7 +114,7 @@ def _document(
                 "analyses": gallery_train.analyses(),
             },
         },
-        "variants": bearings,
+        "variants": variants,
     }
 
 
@@ -163,7 +126,7 @@ FOUR_CYLINDERS = _document(
         "pin_angles": "= engine.crankpin_angles",
         "counterweight_radius": {"value": [72, 0, 0, 72, 72, 0, 0, 72], "unit": "mm"},
     },
-    _bearings(5, 4),
+    bearings(5, [0] * 4, _BIG_END),
     Train(
         bank="0 deg",
         per_throw=1,
@@ -179,7 +142,7 @@ V8 = _document(
         "pin_angles": [f"= engine.crankpin_angles[{n}]" for n in (1, 3, 5, 7)],
         "counterweight_radius": {"value": [76, 60, 60, 76, 76, 60, 60, 76], "unit": "mm"},
     },
-    _bearings(5, 8),
+    bearings(5, [45, -45] * 4, _BIG_END),
     Train(
         bank="engine.bank_angles[1]",
         per_throw=2,

@@ -1,8 +1,8 @@
 """Torsion and life of the gallery's engines: the train of inertias, and the throw next to the flywheel.
 
-Stiffness of the throws and stress tensors of their fillets come from finite elements of the design's own
-crankshaft. The inertia of the throws comes from its solid and from the masses on its pins. The values of
-nose, flywheel, clutch and damper are our own, of usual size for such an engine.
+The stiffness of the throws and the stress tensors of their fillets come from finite-element analyses of the
+design's crankshaft. The inertia of the throws comes from its solid and from the masses on its pins. The
+values of the nose, flywheel, clutch and damper are assumed, and are usual for such an engine.
 """
 
 from __future__ import annotations

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Iterable
 
 from fastapi import APIRouter, Request, Response
 
 from app.catalogue.routes.faults import list_catalogue_faults
 from app.catalogue.routes.templates import Search, list_templates
-from app.designs.routes.designs import (
-    list_designs,
-    show_measurements,
-)
+from app.catalogue.schemas.templates import TemplateSummary
+from app.designs.routes.designs import list_designs, show_measurements
 from app.designs.routes.labels import list_tags
 from app.solids.routes.models import list_models
 from app.web.gallery.gallery import offered
@@ -25,7 +24,7 @@ TAGS_ON_HOME = 30
 
 @router.get("/")
 async def home(request: Request, services: ThePageServices, template: Search = "") -> Response:
-    """Return the home page: designs, templates, models, and first steps; `template` searches templates."""
+    """Return the home page: first steps, designs, templates and models; `template` searches templates."""
     designs, tags, templates, models, faulty = await asyncio.gather(
         services.run(list_designs, services.database, limit=ON_HOME),
         services.run(list_tags, services.database),
@@ -44,7 +43,7 @@ async def home(request: Request, services: ThePageServices, template: Search = "
         tags=tags.items[:TAGS_ON_HOME],
         back="/",
         pictures=dict(await asyncio.gather(*(_picture(services, item.id) for item in designs.items))),
-        templates=shown.items,
+        templates=each_once(shown.items),
         notes=shown.notes,
         search=template,
         latest=latest,
@@ -52,6 +51,15 @@ async def home(request: Request, services: ThePageServices, template: Search = "
         gallery=offered(templates.items, models.items),
         faulty=faulty.items,
     )
+
+
+def each_once(versions: Iterable[TemplateSummary]) -> list[TemplateSummary]:
+    """Return one version of each template: the latest if it is among them, otherwise the last."""
+    chosen: dict[str, TemplateSummary] = {}
+    for item in versions:
+        if item.id not in chosen or not chosen[item.id].latest:
+            chosen[item.id] = item
+    return list(chosen.values())
 
 
 async def _picture(services: PageServices, id: str) -> tuple[str, str | None]:

@@ -99,7 +99,7 @@ export function startPasting(dialog) {
   find("[data-paste-file]").addEventListener("change", async ({ target }) => {
     const [sent] = target.files;
     if (!sent) return;
-    if (sent.size > LARGEST) return refuse(`${sent.name} has ${Math.round(sent.size / 1e6)} MB; a table has at most ${LARGEST / 1e6} MB`);
+    if (sent.size > LARGEST) return refuse(`${sent.name} is ${Math.round(sent.size / 1e6)} MB in size; a table may be at most ${LARGEST / 1e6} MB`);
     file = await inBase64(sent);
     text.value = "";
     chosen = null;

@@ -111,6 +111,7 @@ def step_page(
     hidden: Mapping[str, str],
     refusal: Refusal | None = None,
     notice: str | None = None,
+    design: str = "",
 ) -> Response:
     """Return the empty form, or a refused form with its texts and faults."""
     faults = refusal.faults if refusal else {}
@@ -125,6 +126,7 @@ def step_page(
         fields=fields,
         options=options,
         limits=limits,
+        design=design,
         loose=sheet.loose_faults([*fields, *options, *limits], faults),
         notice=notice,
     )
@@ -148,4 +150,4 @@ async def another_step(id: Id, request: Request, services: ThePageServices) -> R
     typed = dict(request.query_params)
     step, design = await new_step(services, typed), await services.run(services.designs.show, id)
     hidden = {**beside(typed), "add": "template", "revision": str(design.revision)}
-    return step_page(request, step, f"/designs/{id}/blocks", hidden)
+    return step_page(request, step, f"/designs/{id}/blocks", hidden, design=id)

@@ -25,7 +25,7 @@ from app.web.shared.services import PageServices, Refused, ThePageServices
 from cad.imported_models import imported_description
 
 PATIENCE = 15.0
-"""Time that the page waits for the import, which draws imported models that are no STEP files [s]."""
+"""Time that the page waits for the import, which draws imported models that are not STEP files [s]."""
 GLANCE = 0.1  # [s]
 PLACES = ("x", "y", "z", "turn_x", "turn_y", "turn_z")
 FIELDS = ("component", "source", "design", "part", "datum", *PLACES, "may_overlap", "id")
@@ -104,7 +104,7 @@ async def _imported(
     Raises
     ------
     Refused
-        With the reason, if the import is refused, or takes too long.
+        If the import is refused or takes too long; the error states the reason.
     """
     id = typed.get("id", "")
     content = json.dumps(manifest, ensure_ascii=False, indent=1).encode()
@@ -148,7 +148,7 @@ async def _form(
 
 
 async def _bought(services: PageServices) -> list[TemplateSummary]:
-    """Return the newest version of each imported model with a file of its own, which is no assembly."""
+    """Return the newest version of each imported model that has a file of its own and is not an assembly."""
     items = (await services.run(list_models, services.catalogues, limit=500)).items
     models = services.catalogues.models
     return [

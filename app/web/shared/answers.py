@@ -56,7 +56,7 @@ async def calculated(
     Raises
     ------
     Refused
-        With all faults.
+        If there are faults; the error lists all of them.
     """
     cls = await services.ask(services.catalogues.tried(asked.template, asked.version))
     if await services.run(seconds_needed, cls, asked.body) <= EXPENSIVE:

@@ -62,7 +62,7 @@ async def fields(request: Request) -> dict[str, str]:
     try:
         return dict(parse_qsl(body, keep_blank_values=True, max_num_fields=MOST_FIELDS))
     except ValueError:
-        raise BodyTooLarge(f"a form has at most {MOST_FIELDS} fields") from None
+        raise BodyTooLarge(f"a form may have at most {MOST_FIELDS} fields") from None
 
 
 async def forms_only(request: Request) -> None:

@@ -56,7 +56,7 @@ async def parts_of(request: Request) -> dict[str, Part]:
 def read_parts(body: bytes, content_type: str) -> dict[str, Part]:
     """Return the parts of a form by name, in time linear in the length of the body.
 
-    Bytes outside of parts are ignored.
+    Bytes outside the parts are ignored.
     """
     boundary = _BOUNDARY.search(content_type)
     if boundary is None:

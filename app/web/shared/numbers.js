@@ -25,14 +25,18 @@ export const percent = (relative) => `${plain(Number((relative * 100).toPrecisio
 export function quantityText(quantity) {
   if (quantity === null || quantity === undefined) return "";
   if (typeof quantity !== "object" || Array.isArray(quantity)) return written(quantity);
-  if (quantity.value === null) return quantity.reason ?? "none";
+  if (!hasValue(quantity.value)) return quantity.reason ?? "none";
   return [written(quantity.value), unit(quantity.unit), remark(quantity.value)].filter(Boolean).join(" ");
 }
 
 // Return a rounded value: calculated 23.47 mm → chosen 23.5 mm.
 export const roundedText = ({ calculated, chosen }) => `calculated ${quantityText(calculated)} → chosen ${quantityText(chosen)}`;
 
+// A list in which every value is missing has none.
+const hasValue = (value) => (Array.isArray(value) && value.length ? value.some(hasValue) : value !== null);
+
 function written(value) {
+  if (value === null) return "–";
   if (typeof value === "number") return plain(value);
   if (!Array.isArray(value)) return String(value);
   const flat = value.flat(Infinity);

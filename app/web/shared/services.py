@@ -224,7 +224,7 @@ class PageServices(Services):
         Raises
         ------
         Refused
-            With all faults.
+            If there are faults; the error lists all of them.
         """
         with refusals():
             refuse_nul_in(body)

@@ -36,6 +36,7 @@ class Field:
     needed: bool = True
     is_list: bool = False  # whether it has several values, to be edited item by item or pasted
     own: bool = False  # whether it is a design's own parameter, which has only its name
+    assumed: str = ""  # source of a proposed value that is still in use
     labels: Mapping[str, str] = field(default_factory=dict)  # words of the options
     suggestions: Mapping[str, str] = field(default_factory=dict)  # suggested texts, each with its meaning
 
@@ -84,8 +85,9 @@ def of_parameters(
     typed: Mapping[str, str],
     faults: Mapping[str, str],
     rounded: Mapping[str, RoundedValue] = NOTHING_ROUNDED,
+    assumed: Mapping[str, str] | None = None,
 ) -> list[Field]:
-    """Return the fields for a design's own parameters."""
+    """Return the fields for a design's own parameters; `assumed` are the sources of proposed values."""
     return [
         Field(
             name=name,
@@ -96,6 +98,7 @@ def of_parameters(
             value=values.get(name) if is_relation(cell) else None,
             rounded=rounded.get(name) if is_relation(cell) else None,
             own=True,
+            assumed=(assumed or {}).get(name, ""),
         )
         for name, cell in cells.items()
     ]

@@ -3,8 +3,18 @@
 // Return the interface's name of a control: `.scale` → `scale`, `film@level` → `film.level`.
 export const nameOf = (control) => control.replace("@", ".").replace(/^\./, "");
 
+// Where the user's language has a decimal comma, a quantity may be typed with one: 0,58 kg. It is kept with a point.
+const HAS_COMMA = new Intl.NumberFormat(navigator.language).format(0.5).includes(",");
+
+export const withPoints = (text) =>
+  HAS_COMMA && /^\s*[+-]?\d+,\d+(?![\d.,])/.test(text) ? text.replace(/(\d),(?=\d)/g, "$1.") : text;
+
+document.addEventListener("change", ({ target }) => {
+  if (target.matches("form.worksheet input")) target.value = withPoints(target.value);
+});
+
 export function valueOf(text) {
-  const stripped = text.trim();
+  const stripped = withPoints(text).trim();
   if (!/^[[{]/.test(stripped)) return stripped;
   const end = stripped.lastIndexOf(stripped[0] === "[" ? "]" : "}") + 1;
   try {

@@ -26,7 +26,8 @@ class ShownRoot:
 
     text: str  # as it is typed
     shown: str
-    rises: str
+    crossing: str
+    slope: str
     level: str
     error: str
 
@@ -36,10 +37,19 @@ class ShownRoot:
         return cls(
             text=f"{root.value!r} {root.unit}" if root.unit != "1" else repr(root.value),
             shown=numbers.in_line(root),
-            rises={1: "rises", -1: "falls", 0: "touches"}[root.slope],
+            crossing=root.crossing,
+            slope=_slope(root),
             level=in_words(root.level) + ("" if root.confirmed else " (not confirmed)"),
             error="not stated" if root.error is None else f"± {numbers.percent(root.error)}",
         )
+
+
+def _slope(root: Root) -> str:
+    """Return the slope at a root, or the reason why there is none."""
+    slope = root.slope
+    if slope is None:
+        return f"– ({root.reason})"
+    return numbers.in_line({"value": float(f"{slope.value:.3g}"), "unit": slope.unit})
 
 
 @dataclass(frozen=True)

@@ -57,7 +57,7 @@ class Question:
         return {
             "inputs": {name: value for name, value in inputs.items() if name != typed["unknown"]},
             "unknown": typed["unknown"],
-            "bounds": [value_of(typed["low"]), value_of(typed["high"])],
+            "between": [value_of(typed["low"]), value_of(typed["high"])],
             "target": {typed["output"]: value_of(typed["value"])},
             "outputs": [typed["output"]],
             **options,
@@ -151,12 +151,10 @@ def _is_single(declared: DeclaredValue) -> bool:
     return declared.unit is not None and not declared.along and not declared.is_list
 
 
-def _drawing(question: Question, solution: Solution) -> Drawing | None:
-    """Return the drawing of an answer's curve; answers of earlier program versions have none."""
+def _drawing(question: Question, solution: Solution) -> Drawing:
+    """Return the drawing of an answer's curve with its solutions."""
     curve = solution.curve
-    if curve is None or curve.y.unit is None:
-        return None
-    scale, raw = unit(curve.y.unit), value_of(question.typed["value"])
+    scale, raw = unit(curve.y.unit or "1"), value_of(question.typed["value"])
     typed = read_beside(raw, scale.text) if scale.difference else read_any(raw)
     wanted = float(np.asarray(scale.from_si(typed.si)))
     roots = [*solution.roots, *solution.touching]

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from app.calculations.schemas.evaluations import Output
 from app.designs.schemas.designs import Design, RevisionWorksheet
 from app.presentation.criteria import Line, headline_of, line, sides, tone
+from app.presentation.numbers import has_value
 from app.schemas.criteria import Criterion, Verdict
 from app.web.shared.blocks import StepBlock
 from app.web.shared.forms import texts
@@ -70,8 +71,8 @@ def key_outputs(
     ordered = sorted(criteria, key=lambda criterion: criterion.verdict == "not_checked")
     judged = [name for criterion in ordered for name in _judged(step, criterion)]
     wanted = [name for name in dict.fromkeys([*judged, *driving]) if name in outputs]
-    valued = [name for name in wanted if outputs[name].value is not None]
-    last = [name for name in single if outputs[name].value is not None] or single
+    valued = [name for name in wanted if has_value(outputs[name].value)]
+    last = [name for name in single if has_value(outputs[name].value)] or single
     return (valued or wanted or last[-3:])[:MOST_KEYS]
 
 

@@ -27,7 +27,7 @@ export async function showVerdict({ verdict, criteria = [] }) {
   const decide = document.querySelector("[data-decide]");
   if (decide) decide.hidden = banner.dataset.wanted === undefined;
   all.open = Boolean(place.querySelector("[data-all-criteria]")?.open);
-  place.querySelector("[data-verdict-inside]").replaceChildren(...banner.childNodes);
+  for (const part of ["[data-verdict-bar]", "[data-verdict-rest]"]) place.querySelector(part).replaceChildren(...banner.querySelector(part).childNodes);
   for (const line of document.querySelectorAll("[data-fold-verdict]")) {
     const worst = drawn.querySelector(`[data-fold-verdict="${CSS.escape(line.dataset.foldVerdict)}"]`);
     line.replaceChildren(...(worst?.childNodes ?? []));
@@ -37,7 +37,8 @@ export async function showVerdict({ verdict, criteria = [] }) {
 // The previous verdict is no longer valid.
 function refuse(error) {
   place.classList.remove("green", "bad", "open", "plain");
-  place.querySelector("[data-verdict-inside]").textContent = `The verdict could not be loaded: ${error.message}`;
+  place.querySelector("[data-verdict-rest]").replaceChildren();
+  place.querySelector("[data-verdict-bar]").textContent = `The verdict could not be loaded: ${error.message}`;
 }
 
 // Show the key results of a step in its summary line.
@@ -50,7 +51,7 @@ export function showKeys(step, { outputs = {} }) {
 
 // A link in the verdict opens its target; the page leaves room for the verdict above it, and for the part.
 export function startVerdict(form) {
-  leaveRoom("--verdict", place);
+  leaveRoom("--verdict", place.querySelector("[data-verdict-bar]"));
   leaveRoom("--picture", document.querySelector(".part-view"));
   followLinks(place, form);
   rememberFolds(`folds:${form.dataset.design}`);

@@ -50,7 +50,7 @@ class Budget:
         """
         self.left -= size
         if self.left < 0:
-            what = f"its parts have more than {MOST_BYTES // 2**20} MiB unpacked"
+            what = f"its parts are larger than {MOST_BYTES // 2**20} MiB when unpacked"
             raise SheetNotRead("too_large", f"{what}: remove pictures and tables of data, or split the sheet")
 
 

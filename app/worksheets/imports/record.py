@@ -121,7 +121,7 @@ def require_resolved(row: Row) -> None:
     Raises
     ------
     UnresolvedRegions
-        With each region that prevents the release.
+        If regions prevent the release; the error lists them.
     """
     record = record_of(row)
     if record is not None and (open_regions := unresolved(record, row.text)):

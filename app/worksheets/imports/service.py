@@ -24,7 +24,7 @@ from templates.core.errors import TemplateError
 IMPORT = "worksheet_import"
 LIMITS = Limits(deadline=20.0, memory_mb=512)
 MOST_BYTES = 16 * 2**20
-"""Largest size of a file; the public sheets have at most 0.6 MB."""
+"""Largest size of a file; the largest public sheet is 0.6 MB."""
 
 
 class Imports:
@@ -56,7 +56,7 @@ class Imports:
             If too many jobs are waiting.
         """
         if not 0 < len(content) <= MOST_BYTES:
-            what = "the body is empty" if not content else f"it has more than {MOST_BYTES // 2**20} MiB"
+            what = "the body is empty" if not content else f"it is larger than {MOST_BYTES // 2**20} MiB"
             raise SheetNotRead(
                 "too_large" if content else "no_sheet", f"{what}: send one .mcdx, .xmcd or .xmcdz file"
             )

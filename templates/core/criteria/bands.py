@@ -189,7 +189,7 @@ def value_and_bounds(
     Raises
     ------
     FaultyText
-        With code `shape`, if arrays have different lengths.
+        If arrays have different lengths; the code is `shape`.
     """
     name = side.only_name
     if name and not shifts:

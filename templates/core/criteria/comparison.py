@@ -88,7 +88,7 @@ def compare(
     Raises
     ------
     FaultyText
-        With code `shape`, if arrays have different lengths.
+        If arrays have different lengths; the code is `shape`.
     """
     axes = max(estimates[name].axes for name in criterion.names) if criterion.names else 0
     fitted = aligned(estimates, axes)

@@ -176,7 +176,7 @@ def read_criterion(name: str, raw: Any, meanings: Mapping[str, NameDescription])
     Raises
     ------
     FaultyText
-        With a code and a remedy.
+        If the declaration is wrong; the error states a code and a remedy.
     """
     parts = {"require": raw} if isinstance(raw, str) else raw
     _check_keys(parts, _KEYS, "require")
@@ -218,8 +218,8 @@ def read_comparison(text: str) -> tuple[Relation, Sign, Relation]:
     Raises
     ------
     FaultyText
-        With code `syntax` if there is not exactly one `>=` or `<=`; with `index`, `no_truth` or `shape` if a
-        side contains an item, a condition or a list; or as raised by `parse`.
+        If there is not exactly one `>=` or `<=` (code `syntax`), if a side contains an item, a condition or a
+        list (code `index`, `no_truth` or `shape`), or if `parse` refuses a side.
     """
     if not isinstance(text, str) or len(text) > LONGEST_REQUIRE:
         raise FaultyText("syntax", f"`require` must be a text of at most {LONGEST_REQUIRE} characters")
@@ -309,7 +309,7 @@ def _as_compared(
     Raises
     ------
     FaultyText
-        With code `unit_mismatch`, if the other side is a value in K that may be either.
+        If the other side is a value in K that may be either; the code is `unit_mismatch`.
     """
     one, other = value.kind(kinds), limit.kind(kinds)
     meant = as_compared(sign, other, value.tree, limit.tree), as_compared(sign, one, limit.tree, value.tree)

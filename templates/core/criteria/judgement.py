@@ -188,7 +188,7 @@ def not_judged(judgement: Judgement) -> str:
 
 
 def _in_words(text: str) -> str:
-    """Return the words of a side; a number is returned unchanged."""
+    """Return the words that precede the value of a side; empty for a number, which needs none."""
     if _is_number(text):
         return ""
     return _name(text) if _NAME.fullmatch(text) else f"{_name(text)} ="

@@ -67,7 +67,8 @@ def read_limits(criteria: Iterable[Criterion], raw: Mapping[str, Any]) -> dict[s
     Raises
     ------
     InvalidInputs
-        With all faults at once, each under a name such as `limits.permissible_pressure`.
+        If limits are wrong; the error lists all faults, each under a name such as
+        `limits.permissible_pressure`.
     """
     if not raw:
         return {}

@@ -11,34 +11,37 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from templates.core.errors import InvalidInputs
-from templates.core.language.crossings import Place
+from templates.core.language.crossings import Direction, Place
 from templates.core.language.scan import Outputs, SampledCurve
+from templates.core.language.slopes import missing_slope, side_slopes
 
 CONFIRMED = 8  # most solutions that are recalculated at another level than that of the scan
 POLISHES, POLISHED = 8, 1e-9  # most steps at that level, and the relative miss at which they stop
 SETTLED = 1e-3  # largest relative miss of a solution after the last step
 ALIKE = 1e-9  # fraction of the distance between the bounds within which two solutions are the same
-STEP = 1e-6  # relative step of the unknown for the slope
 
 
 @dataclass(frozen=True)
 class Root:
     """A value of the unknown [in its declared unit] that gives the target.
 
-    `slope` is 1 where the output rises, −1 where it falls, 0 where it is flat or only touches the target.
-    `output` [in its declared unit], `level` and `error` are those of the output there; the error is None if
-    none is stated. A root that is not `confirmed` is a solution at the level of the scan only.
+    `crossing` is "touches" where the output is flat or only `touches` the target. `output` [in its declared
+    unit], `level` and `error` are those of the output there; the error is None if none is stated. `slope` is
+    that of the scanned curve [SI], or None for the reason in `no_slope`. A root that is not
+    `confirmed` is a solution at the level of the scan only.
     """
 
     value: float
     output: float
-    slope: int
+    crossing: Direction
     touches: bool
     level: str | None
     error: float | None
     confirmed: bool
     miss: float
     """Output minus target, relative to the target."""
+    slope: float | None = None
+    no_slope: str | None = None
 
 
 def confirmed(
@@ -51,10 +54,15 @@ def confirmed(
     """
     is_other = requested.chooses or not requested.is_at_levels_of(scanned)
     most = CONFIRMED if is_other else len(places)
-    near = [_at_requested(requested, scanned, place, bounds) for place in places[:most]]
+    slopes = _slopes(scanned, places[:most], bounds) if is_other else [np.nan] * most
+    near = [
+        _at_requested(requested, scanned, place, slope, bounds)
+        for place, slope in zip(places, slopes, strict=False)
+    ]
     checked = [*near, *(None for _ in places[most:])]
     roots = [root or _unconfirmed(scanned, place) for root, place in zip(checked, places, strict=True)]
-    return _distinct(sorted(roots, key=lambda root: root.value), _shown(scanned, bounds))
+    distinct = _distinct(sorted(roots, key=lambda root: root.value), _shown(scanned, bounds))
+    return _with_slopes(scanned, distinct, bounds)
 
 
 def _shown(curve: SampledCurve, bounds: tuple[float, float]) -> float:
@@ -73,9 +81,16 @@ def _distinct(roots: list[Root], span: float) -> list[Root]:
 
 
 def _at_requested(
-    requested: SampledCurve, scanned: SampledCurve, place: Place, bounds: tuple[float, float]
+    requested: SampledCurve,
+    scanned: SampledCurve,
+    place: Place,
+    slope: float,
+    bounds: tuple[float, float],
 ) -> Root | None:
-    """Return the solution near a scanned one at the requested level; None if there is none."""
+    """Return the solution near a scanned one at the requested level; None if there is none.
+
+    `slope` is that of the scanned curve.
+    """
     try:
         outputs = requested.outputs(np.array([place.x]))
     except InvalidInputs:
@@ -83,14 +98,14 @@ def _at_requested(
     fixed = requested.at_level(outputs.level) if outputs.level else requested
     if fixed.is_at_levels_of(scanned):
         return _root(fixed, place, place.x, outputs)
-    moved = None if place.touches else _polished(fixed, scanned, place, bounds, outputs)
+    moved = None if place.touches else _polished(fixed, place, slope, bounds, outputs)
     return moved and _root(fixed, place, *moved)
 
 
 def _polished(
     curve: SampledCurve,
-    scanned: SampledCurve,
     place: Place,
+    slope: float,
     bounds: tuple[float, float],
     outputs: Outputs,
 ) -> tuple[float, Outputs] | None:
@@ -98,7 +113,7 @@ def _polished(
 
     The first step uses the slope of the scanned curve; further steps use secants.
     """
-    x, slope = place.x, _slope(scanned, place.x, bounds)
+    x = place.x
     size = abs(curve.wanted) or abs(slope) * (bounds[1] - bounds[0])
     miss = curve.miss_of(outputs)
     for _ in range(POLISHES):
@@ -115,11 +130,24 @@ def _polished(
     return (x, outputs) if abs(miss) <= SETTLED * size else None
 
 
-def _slope(curve: SampledCurve, x: float, bounds: tuple[float, float]) -> float:
-    """Return the slope of the curve by differences within the bounds; NaN if a value is missing."""
-    step = STEP * (abs(x) or bounds[1] - bounds[0])
-    low, high = max(bounds[0], x - step), min(bounds[1], x + step)
-    return (curve.miss(high) - curve.miss(low)) / (high - low)
+def _slopes(curve: SampledCurve, places: Sequence[Place], bounds: tuple[float, float]) -> list[float]:
+    """Return the slope of the curve at each place; NaN if the values beside it are missing."""
+    slopes: list[float] = side_slopes(curve, np.array([place.x for place in places]), bounds).mean.tolist()
+    return slopes
+
+
+def _with_slopes(curve: SampledCurve, roots: list[Root], bounds: tuple[float, float]) -> list[Root]:
+    """Return the roots with the slope of the scanned curve at each."""
+    x = np.clip(curve.x.scale.to_si(np.array([root.value for root in roots])), *bounds)
+    slopes = side_slopes(curve, x, bounds)
+    sides = zip(roots, slopes.mean.tolist(), slopes.below, slopes.above, strict=True)
+    missing = [
+        (root, slope, missing_slope(root.crossing, root.touches, below, above))
+        for root, slope, below, above in sides
+    ]
+    return [
+        replace(root, slope=None if reason else slope, no_slope=reason) for root, slope, reason in missing
+    ]
 
 
 def _unconfirmed(scanned: SampledCurve, place: Place) -> Root:
@@ -133,7 +161,7 @@ def _root(curve: SampledCurve, place: Place, x: float, outputs: Outputs) -> Root
     return Root(
         float(curve.x.scale.from_si(x)),
         float(curve.y.scale.from_si(outputs.values[0])),
-        place.slope,
+        place.crossing,
         place.touches,
         outputs.level,
         None if np.isnan(stated) else stated,

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 from scipy.optimize import brentq
@@ -20,12 +21,19 @@ JUMP = (
 )
 
 
+Direction = Literal["rises", "falls", "touches"]
+
+
 @dataclass(frozen=True)
 class Place:
-    """A value of the unknown [SI] where the output meets the target; slope 1 rises, −1 falls, 0 neither."""
+    """A value of the unknown [SI] where the output meets the target, and how it does so.
+
+    `crossing` is "touches" where the output reaches the target without crossing it, or is flat. Only the
+    first of these `touches`.
+    """
 
     x: float
-    slope: int
+    crossing: Direction
     touches: bool = False
 
 
@@ -76,8 +84,13 @@ def _exact(samples: Samples) -> Iterator[Place]:
     for run in np.split(zero, np.flatnonzero(np.diff(zero) > 1) + 1):
         if run.size:
             before, after = _sign(samples.miss, run[0] - 1), _sign(samples.miss, run[-1] + 1)
-            slope = 0 if run.size > 1 else int(np.sign(after - before))
-            yield Place(float(samples.x[run[0]]), slope, touches=bool(before * after > 0))
+            crossing = _direction(0.0 if run.size > 1 else after - before)
+            yield Place(float(samples.x[run[0]]), crossing, touches=bool(before * after > 0))
+
+
+def _direction(rise: float) -> Direction:
+    """Return how the output meets the target if it rises by this much there."""
+    return "rises" if rise > 0 else "falls" if rise < 0 else "touches"
 
 
 def _sign(miss: Array, i: int) -> float:
@@ -93,7 +106,7 @@ def _touching(curve: SampledCurve, samples: Samples) -> list[Place]:
     near = near[np.abs(samples.miss[near]) <= JUMP * size]
     crossed = samples.crossings()
     alone = [i for i in near if not ({i - 1, i} & set(crossed.tolist()))]
-    return [Place(float(samples.x[i]), 0, touches=True) for i in _best_of_neighbours(samples, alone)]
+    return [Place(float(samples.x[i]), "touches", touches=True) for i in _best_of_neighbours(samples, alone)]
 
 
 def _best_of_neighbours(samples: Samples, near: list[int]) -> list[int]:
@@ -116,7 +129,7 @@ def _closed(curve: SampledCurve, samples: Samples, i: int) -> Place | Leap:
     root = float(brentq(curve.miss, low, high, xtol=1e-300, rtol=4e-15, disp=False))
     size = max(abs(curve.wanted), float(np.nanmax(np.abs(samples.miss))) * JUMP)
     if abs(curve.miss(root)) <= JUMP * size:
-        return Place(root, int(np.sign(samples.miss[i + 1])))
+        return Place(root, _direction(samples.miss[i + 1]))
     step = 1e-9 * (high - low)
     sides = curve.sample(np.array([max(low, root - step), min(high, root + step)])).miss
     before, after = np.where(np.isfinite(sides), sides, samples.miss[[i, i + 1]]) + curve.wanted

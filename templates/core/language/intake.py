@@ -351,7 +351,7 @@ def check_shapes(self: Calculation) -> None:
     Raises
     ------
     InvalidInputs
-        Naming the arrays and their shapes.
+        If they do not; the error names the arrays and their shapes.
     """
     arrays = {n: v for n, v in vars(self).items() if isinstance(v, np.ndarray)}
     if not arrays:

@@ -20,7 +20,7 @@ def read_question(
     cls: type[Template],
     raw: Mapping[str, Any],
     unknown: str,
-    bounds: Sequence[Any],
+    between: Sequence[Any],
     target: Mapping[str, Any],
     *,
     tolerance: float | None = None,
@@ -31,13 +31,13 @@ def read_question(
     Raises
     ------
     InvalidInputs
-        With everything that is wrong with the question at once.
+        If the question has faults; the error lists all of them.
     """
     *_, faults = read_options(cls, **names)
     declared, formula = _unknown(cls, unknown, faults), None
     if unknown in raw:
         faults.append(Fault(f"inputs.{unknown}", "solved_for", "this input is solved for; omit it"))
-    ends = _ends(declared, bounds, faults) if declared else (0.0, 1.0)
+    ends = _ends(declared, between, faults) if declared else (0.0, 1.0)
     wanted = 0.0
     if len(target) != 1:
         faults.append(Fault("target", "one_output", "name exactly one output and its wanted value"))
@@ -77,15 +77,15 @@ def _solvable(cls: type[Template]) -> list[str]:
     ]
 
 
-def _ends(declared: Input, bounds: Sequence[Any], faults: list[Fault]) -> tuple[float, float]:
-    if len(bounds) != 2:
+def _ends(declared: Input, between: Sequence[Any], faults: list[Fault]) -> tuple[float, float]:
+    if len(between) != 2:
         faults.append(
-            Fault("bounds", "two_values", "give two bounds: the lowest and the highest value to try")
+            Fault("between", "two_values", "give two bounds: the lowest and the highest value to try")
         )
         return 0.0, 1.0
-    low, high = (_scalar(read, end, declared.meaning.accepted, "bounds", faults) for end in bounds)
+    low, high = (_scalar(read, end, declared.meaning.accepted, "between", faults) for end in between)
     if low >= high:
-        faults.append(Fault("bounds", "not_ascending", "the first bound must be below the second"))
+        faults.append(Fault("between", "not_ascending", "the first bound must be below the second"))
     return low, high
 
 

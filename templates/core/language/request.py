@@ -37,7 +37,7 @@ def read_request(
     Raises
     ------
     InvalidInputs
-        With everything that is wrong at once.
+        If the request has faults; the error lists all of them.
     """
     names, shown_in, faults = read_options(cls, outputs, units, level)
     given, wrong = _limits(cls, limits) if limits else ({}, [])

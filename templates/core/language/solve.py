@@ -50,11 +50,11 @@ def solve(
     cls: type[Template],
     raw: Mapping[str, Any],
     unknown: str,
-    bounds: Sequence[Any],
+    between: Sequence[Any],
     target: Mapping[str, Any],
     **options: Any,
 ) -> Solution:
-    """Find the values of `unknown` within `bounds` for which the one output in `target` has the target value.
+    """Find the values of `unknown` in the interval `between` that give the one output in `target` its value.
 
     `options` are passed to `evaluate`. If there are several solutions, `unknown` of the result is the lowest,
     and a warning names the others.
@@ -66,12 +66,12 @@ def solve(
     Unreachable
         If no value between the bounds gives the target; the error contains the reachable range.
     """
-    declared, bounds_si, formula, wanted = read_question(cls, raw, unknown, bounds, target, **options)
+    declared, interval, formula, wanted = read_question(cls, raw, unknown, between, target, **options)
     fidelity: dict[str, Any] = {name: options[name] for name in ("level", "tolerance") if name in options}
     requested = TargetCurve(
         declared.meaning, formula.meaning, wanted, cls, dict(raw), declared, formula, fidelity
     )
-    roots = roots_of(requested, replace(requested, fidelity=_cheap(cls, fidelity)), bounds_si)
+    roots = roots_of(requested, replace(requested, fidelity=_cheap(cls, fidelity)), interval)
     given = {**raw, unknown: {"value": roots.lowest.value, "unit": declared.meaning.unit}}
     return Solution(
         roots.lowest.value,

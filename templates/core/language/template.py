@@ -126,7 +126,7 @@ class Template(Calculation):
         Raises
         ------
         InvalidInputs
-            With all wrong inputs at once.
+            If inputs are wrong; the error lists all of them.
         """
         if (inputs := plain(cls, raw)) is not None:
             ledger = Ledger(typed=inputs.typed, missing=inputs.missing)

@@ -244,7 +244,7 @@ class Builder:
         *parts, tree = statement.parts
         unknowns = [str(unknown.children[0]) for unknown in parts]
         if len(unknowns) > MOST_UNKNOWNS:
-            message = f"a system has at most {MOST_UNKNOWNS} unknowns"
+            message = f"a system may have at most {MOST_UNKNOWNS} unknowns"
             raise statement.refuse(
                 "too_large", message, parts[MOST_UNKNOWNS], "solve some unknowns in separate formulas"
             )

@@ -45,7 +45,7 @@ def meaning_of(
     Raises
     ------
     Refusal
-        With code `clause`, `limit`, `name` or `unit_mismatch`.
+        The code is `clause`, `limit`, `name` or `unit_mismatch`.
     """
     said = said_in(statement, clauses, reader, unit_text, accepted)
     return _meaning(statement, unit_text, words, said), said
@@ -66,11 +66,11 @@ def words_of(statement: ParsedStatement, words: lark.Token) -> str:
     Raises
     ------
     Refusal
-        With code `too_large` or `name`, if the words are too long or missing.
+        If the words are too long (code `too_large`) or missing (code `name`).
     """
     text = " ".join(words[1:-1].split())
     if len(text) > LONGEST_WORDS:
-        message = f"words have at most {LONGEST_WORDS} characters"
+        message = f"words may have at most {LONGEST_WORDS} characters"
         raise statement.refuse(
             "too_large", message, words, "move the rest to a line of prose that begins with `>`"
         )

@@ -27,7 +27,7 @@ def criterion_of(
     Raises
     ------
     Refusal
-        With code `check` if it is not a single comparison by <= or >=, or with a code of `read_criterion`.
+        If it is not a single comparison by <= or >=, or `read_criterion` refuses it; the code is `check`.
     """
     at = statement.parts[0]
     remedy = "write `p <= 30 MPa`; several conditions are several checks"
@@ -53,7 +53,7 @@ def relation_text(node: Any, names: Mapping[str, str]) -> str:
     Raises
     ------
     FaultyText
-        With code `check`, if a criterion cannot express the tree.
+        If a criterion cannot express the tree; the code is `check`.
     """
     match node:
         case Constant(text=text) if text:

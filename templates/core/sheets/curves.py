@@ -34,7 +34,7 @@ def curve_of(
     Raises
     ------
     Refusal
-        With code `curve`, if there are too few points or they do not ascend.
+        If there are too few points or they do not ascend; the code is `curve`.
     """
     sides = list(zip(*(point.children for point in points), strict=True))
     along, values = (

@@ -35,7 +35,7 @@ class Reader:
         Raises
         ------
         Refusal
-            With the place of the fault.
+            If the expression has a fault; the refusal states its place.
         """
         before = self.names.fuel
         try:
@@ -68,7 +68,7 @@ class Reader:
         Raises
         ------
         Refusal
-            With code `unit_mismatch`, `axis_mismatch` or `no_truth`.
+            The code is `unit_mismatch`, `axis_mismatch` or `no_truth`.
         """
         tree, got = part
         if got.truth:
@@ -107,7 +107,7 @@ class Reader:
         Raises
         ------
         Refusal
-            With code `limit` if it is not a single number, or `unit_mismatch`.
+            If it is not a single number (code `limit`), or its unit does not match (code `unit_mismatch`).
         """
         part = self.part(statement, tree)
         constant, sort = part
@@ -130,7 +130,7 @@ class Reader:
         Raises
         ------
         Refusal
-            With code `limit` if it needs a name or is not finite; otherwise as `fitting`.
+            If it needs a name or is not finite (code `limit`), or if `fitting` refuses it.
         """
         part = self.part(statement, tree)
         if isinstance(part[0], Constant) and part[0].text and " " not in part[0].text:
@@ -146,7 +146,7 @@ class Reader:
         Raises
         ------
         Refusal
-            With code `limit` if it needs a name, or is not finite.
+            If it needs a name, or is not finite; the code is `limit`.
         """
         body = TreeBody(node, statement.chunk.line)
         if body.uses:
@@ -178,7 +178,7 @@ class Reader:
         Raises
         ------
         Refusal
-            With code `unknown_unit`.
+            The code is `unknown_unit`.
         """
         name = text[1:-1].strip()
         try:

@@ -39,7 +39,7 @@ class Function:
         Raises
         ------
         FaultyText
-            With code `unit_mismatch` or `unknown_function`, if the arguments do not fit.
+            If the arguments do not fit; the code is `unit_mismatch` or `unknown_function`.
         """
         if len(arguments) != len(self.parameters):
             detail = f"{self.name} takes {self.takes}, not {len(arguments)} values"
@@ -71,7 +71,7 @@ def taken(parameter: str, unit_text: str, part: Part, takes: str) -> Kind:
     Raises
     ------
     FaultyText
-        With code `unit_mismatch`, if the argument does not fit the declared unit of the parameter.
+        If the argument does not fit the declared unit of the parameter; the code is `unit_mismatch`.
     """
     node, got = part
     scale, wanted = unit(unit_text), kind_of(unit_text, parameter)

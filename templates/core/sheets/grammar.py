@@ -74,14 +74,14 @@ def parsed(chunk: Chunk) -> ParsedStatement:
     Raises
     ------
     Refusal
-        With code `syntax` and the place, or `too_large`.
+        The code is `syntax`, with the place, or `too_large`.
     """
     try:
         tree, words = _tree(chunk.text)
     except lark.exceptions.UnexpectedInput as error:
         raise Refusal(_not_understood(chunk, error)) from None
     if _parts(tree) > MOST_PARTS or height(tree) > MOST_DEPTH:
-        message = f"a statement has at most {MOST_PARTS} parts, {MOST_DEPTH} deep"
+        message = f"a statement may have at most {MOST_PARTS} parts, {MOST_DEPTH} deep"
         remedy = "define its parts under names of their own"
         raise Refusal(SheetFault(chunk.line, 1, "too_large", message, remedy=remedy))
     return ParsedStatement(chunk, tree, words)

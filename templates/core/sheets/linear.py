@@ -150,7 +150,7 @@ def system_of(
     Raises
     ------
     Refusal
-        With code `equation` or `axis_mismatch`.
+        The code is `equation` or `axis_mismatch`.
     """
     node, sort = reader.part(statement, tree)
     if sort.axis:

@@ -64,7 +64,7 @@ def _kind(line: str) -> str:
 
 def _faults_of_text(text: str) -> Iterator[SheetFault]:
     if len(text) > MOST_BYTES or len(text.encode("utf-8", "replace")) > MOST_BYTES:
-        message = f"a worksheet has at most {MOST_BYTES // 1024} KiB"
+        message = f"a worksheet may be at most {MOST_BYTES // 1024} KiB in size"
         yield SheetFault(1, 1, "too_large", message, remedy="make two worksheets of it")
         return
     for number, line in enumerate(text.split("\n"), 1):
@@ -82,12 +82,12 @@ def _is_no_text(sign: str) -> bool:
 def _faults_of_size(chunks: list[Chunk]) -> Iterator[SheetFault]:
     statements = [chunk for chunk in chunks if not chunk.kind]
     if len(statements) > MOST_STATEMENTS:
-        message = f"a worksheet has at most {MOST_STATEMENTS} statements"
+        message = f"a worksheet may have at most {MOST_STATEMENTS} statements"
         line = statements[MOST_STATEMENTS].line
         yield SheetFault(line, 1, "too_large", message, remedy="make two worksheets of it")
     for chunk in statements:
         if len(chunk.text) > LONGEST_STATEMENT:
-            message = f"a statement has at most {LONGEST_STATEMENT} characters"
+            message = f"a statement may have at most {LONGEST_STATEMENT} characters"
             yield SheetFault(
                 chunk.line, 1, "too_large", message, remedy="define its parts under names of their own"
             )

@@ -53,7 +53,7 @@ class Names:
         Raises
         ------
         FaultyText
-            With code `unknown_name`.
+            The code is `unknown_name`.
         FollowsFromFault
             If the statement of the name has a fault.
         """
@@ -84,11 +84,11 @@ class Names:
         Raises
         ------
         FaultyText
-            With code `too_large`, if there are too many.
+            If there are too many; the code is `too_large`.
         """
         self.fuel -= operations
         if self.fuel < 0:
-            detail = f"a worksheet must have at most {FUEL} operations, including those in its functions"
+            detail = f"a worksheet may have at most {FUEL} operations, including those in its functions"
             raise FaultyText("too_large", detail)
 
     def check_new(self, name: str) -> None:
@@ -97,13 +97,13 @@ class Names:
         Raises
         ------
         FaultyText
-            With code `name`.
+            The code is `name`.
         """
         if name in self.sorts or name in self.functions:
             raise FaultyText("name", f"{name[:LONGEST_NAME]} is already declared above")
         if len(name) > LONGEST_NAME or "." in name:
             raise FaultyText(
-                "name", f"a name must have at most {LONGEST_NAME} letters, digits and _, and no dot"
+                "name", f"a name may have at most {LONGEST_NAME} letters, digits and _, and no dot"
             )
         if (
             name in _WORDS
@@ -121,6 +121,6 @@ def sort_of(text: str, name: str | None = None) -> Sort:
     Raises
     ------
     FaultyText
-        With code `unknown_unit`.
+        The code is `unknown_unit`.
     """
     return Sort(kind_of(text, name))

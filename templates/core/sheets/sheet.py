@@ -128,7 +128,8 @@ def read(text: str) -> Sheet:
     Raises
     ------
     SheetRefused
-        With every fault, each with its line and column, a code, a sentence and a remedy.
+        If the text has faults. The error lists all of them, each with line and column, a code, a sentence and
+        a remedy.
     """
     text = normal(text)
     chunks = chunks_of(text)

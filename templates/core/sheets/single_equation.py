@@ -139,7 +139,7 @@ def equation_of(statement: ParsedStatement, reader: Reader, tree: lark.Tree[Any]
     Raises
     ------
     Refusal
-        With code `equation`.
+        The code is `equation`.
     """
     node, sort = reader.part(statement, tree)
     if not (isinstance(node, Apply) and node.operation.sign == "=="):

@@ -22,7 +22,7 @@ def value_of(node: Any, values: Mapping[str, Value]) -> Value:
     Raises
     ------
     FaultyText
-        With code `shape`, if a single value is used as a list, or a list as a single value.
+        If a single value is used as a list, or a list as a single value; the code is `shape`.
     """
     if isinstance(node, Name):
         return values[node.name]
@@ -42,7 +42,7 @@ def listwise(operation: Operation, parts: list[Value], ranks: list[int]) -> Valu
     Raises
     ------
     FaultyText
-        With code `shape`.
+        The code is `shape`.
     """
     check_ranks(operation, ranks)
     if operation in OVER_LISTS.values() and not ranks[0]:
@@ -56,7 +56,7 @@ def check_ranks(operation: Operation, ranks: list[int]) -> None:
     Raises
     ------
     FaultyText
-        With code `shape`.
+        The code is `shape`.
     """
     if operation is LIST and any(ranks):
         detail = "each item of a list is a single value, but an expression in it gives an array"

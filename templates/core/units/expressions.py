@@ -60,7 +60,7 @@ class Scope(Protocol):
         Raises
         ------
         FaultyText
-            With code `unknown_name`.
+            The code is `unknown_name`.
         """
 
     def function(self, name: str) -> Callable[[list[Part]], Part] | None:
@@ -72,7 +72,7 @@ class Scope(Protocol):
         Raises
         ------
         FaultyText
-            With code `too_large`.
+            The code is `too_large`.
         """
 
 
@@ -90,7 +90,7 @@ def checked(tree: lark.Tree[Any], scope: Scope) -> Part:
     Raises
     ------
     FaultyPlace
-        With code `unknown_name`, `unknown_function`, `unknown_unit`, `unit_mismatch`, `no_truth`,
+        The code is `unknown_name`, `unknown_function`, `unknown_unit`, `unit_mismatch`, `no_truth`,
         `axis_mismatch`, `index`, `syntax`, `not_finite` or `too_large`.
     """
     return _CheckedBuilder(scope).part(tree)
@@ -104,7 +104,7 @@ def built(tree: lark.Tree[Any]) -> Any:
     Raises
     ------
     FaultyText
-        With code `unknown_function`, `unknown_unit`, `syntax` or `not_finite`.
+        The code is `unknown_function`, `unknown_unit`, `syntax` or `not_finite`.
     """
     return _Builder().part(tree)[0]
 
@@ -191,8 +191,7 @@ class _Builder:
         Raises
         ------
         FaultyText
-            With code `too_large`, because an expression between two signs is compared twice and so calculated
-            twice.
+            If an expression between two signs, which is calculated twice, is too large (code `too_large`).
         """
         if any(_size(node) > MAX_TWICE for node, _ in sides[1:-1]):
             raise FaultyText("too_large", "chained comparisons are nested too deeply; join them by `and`")
@@ -255,8 +254,8 @@ def check_word(name: str, word: str, options: Sequence[str]) -> None:
     Raises
     ------
     FaultyText
-        With code `no_truth`, if the name is not a choice; `unknown_name`, if the word is not one of its
-        options.
+        If the name is not a choice (code `no_truth`), or the word is not one of its options (code
+        `unknown_name`).
     """
     if not options:
         raise FaultyText("no_truth", f"{name[:60]} is not a choice; compare it with < <= > >= == or !=")
@@ -282,7 +281,7 @@ def constant(text: str) -> Constant:
     Raises
     ------
     FaultyText
-        With code `unknown_unit` or `not_finite`.
+        The code is `unknown_unit` or `not_finite`.
     """
     number, _, name = text.partition(" ")
     scale, value = _unit(name or "1"), float(number)

@@ -18,7 +18,7 @@ def check_index(item: Item, kinds: Mapping[str, Kind]) -> None:
     Raises
     ------
     FaultyText
-        With code `index`.
+        The code is `index`.
     """
     if not isinstance(item.index, str):
         return
@@ -45,7 +45,7 @@ def item_of(item: Item, values: Mapping[str, Value], rows: Container[str] = ()) 
     Raises
     ------
     FaultyText
-        With code `index`.
+        The code is `index`.
     """
     whole = np.asarray(values[item.name], dtype=float)
     has_rows = item.name in rows

@@ -82,7 +82,7 @@ def kind_of(text: str, name: str | None = None) -> Kind:
     Raises
     ------
     FaultyText
-        With code `unknown_unit`.
+        The code is `unknown_unit`.
     """
     scale = unit(text)
     either = scale.base == registry.kelvin and not scale.difference

@@ -29,6 +29,7 @@ from templates.core.units.tolerance import (
     split,
     stated,
 )
+from templates.core.units.typed_lists import TypedList, listed
 from templates.core.units.units import (
     Unit,
     Value,
@@ -71,18 +72,18 @@ class TypedQuantity:
 def read(raw: Any, declared: str) -> TypedQuantity:
     """Return a quantity from any of its accepted forms; `declared` is the declared unit of the value.
 
-    The forms are `"25 kN"`, `{"value": 25, "unit": "kN"}` (value may be a list), a list of these, and a bare
-    number or list of numbers if the declared unit is `1`. A text or an object may contain a tolerance: `"25 ±
-    1 kN"`, `"plus": 1`.
+    The forms are `"25 kN"`, a list such as `"1 2 3 mm"` or `"1-3-4-2"` (see `typed_lists`), `{"value": 25,
+    "unit": "kN"}` (value may be a list), a list of these, and a bare number or list of numbers if the
+    declared unit is `1`. A text or an object may contain a tolerance: `"25 ± 1 kN"`, `"plus": 1`.
 
     Raises
     ------
     FaultyText
-        With a code and a remedy.
+        If the value is not a valid quantity; the error states a code and a remedy.
     """
     match raw:
         case str():
-            return _read_text(raw, declared)
+            return _read_text(raw, declared) if len(raw) <= LONGEST_TEXT else _read_long(raw, declared)
         case dict():
             return _read_object(raw, declared)
         case list() | tuple():
@@ -104,7 +105,7 @@ def read_beside(raw: Any, declared: str) -> TypedQuantity:
     Raises
     ------
     FaultyText
-        With a code and a remedy.
+        If the value is not a valid quantity; the error states a code and a remedy.
     """
     if not unit(declared).difference:
         return read(raw, declared)
@@ -122,6 +123,11 @@ def _beside(raw: Any) -> Any:
 
 def _as_difference(match: re.Match[str]) -> str:
     return difference_of(match[0])
+
+
+def in_points(text: str) -> str:
+    """Return a text with decimal points in place of decimal commas, unless a comma may group thousands."""
+    return text if _GROUPED.search(text) and not _ENGLISH.search(text) else _with_points(text)
 
 
 def scaled(typed: TypedQuantity, factor: float) -> TypedQuantity:
@@ -146,7 +152,7 @@ def read_any(raw: Any) -> TypedQuantity:
     Raises
     ------
     FaultyText
-        With a code and a remedy.
+        If the value is not a valid quantity; the error states a code and a remedy.
     """
     return read(raw, unit(_own_unit(raw)).text)
 
@@ -157,6 +163,8 @@ def _own_unit(raw: Any) -> str:
             break
         raw = raw[0]
     match raw:
+        case str() if items := listed(raw):
+            return items.unit or "1"
         case str() if parts := _parted(_with_points(raw)):
             written = split(parts[1])
             return written.unit if written else parts[1] or "1"
@@ -167,6 +175,8 @@ def _own_unit(raw: Any) -> str:
 
 @lru_cache(maxsize=4096)  # a user who varies one input sends the others again
 def _read_text(text: str, declared: str) -> TypedQuantity:
+    if items := listed(text):
+        return _read_items(items, declared)
     _refuse_decimal_comma(text, declared)
     if not (parts := _parted(text)):
         raise _no_quantity(text, declared)
@@ -180,15 +190,31 @@ def _read_text(text: str, declared: str) -> TypedQuantity:
     return _quantity(_finite(float(number)), name, declared)
 
 
+def _read_long(text: str, declared: str) -> TypedQuantity:
+    """Return the list in a text that is too long for a single quantity and for the cache."""
+    if items := listed(text):
+        return _read_items(items, declared)
+    raise _no_quantity(text, declared)
+
+
+def _read_items(items: TypedList, declared: str) -> TypedQuantity:
+    """Return a quantity from a list that was typed without the syntax of JSON."""
+    if not items.unit and declared != "1":
+        raise FaultyText(
+            "missing_unit", f"the unit is missing; write it at the end, for example `1 2 {declared}`"
+        )
+    return _quantity(_array(items.numbers), items.unit or "1", declared)
+
+
 def _refuse_decimal_comma(text: str, declared: str) -> None:
     """Raise an error for a quantity with decimal commas; the error shows it with decimal points.
 
     Raises
     ------
     FaultyText
-        With the same text in decimal points.
+        If the text has decimal commas; the error shows it with decimal points.
     """
-    if (plain := _with_points(text)) == text or not _parted(plain):
+    if (plain := _with_points(text)) == text or not (_parted(plain) or listed(plain)):
         return
     try:
         _read_text(plain, declared)

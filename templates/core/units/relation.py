@@ -109,8 +109,8 @@ class Relation:
         Raises
         ------
         FaultyText
-            With code `unit_mismatch`, if units do not match; `no_truth`, if a condition is used as a quantity
-            or vice versa.
+            If units do not match (code `unit_mismatch`), or a condition is used as a quantity or vice versa
+            (code `no_truth`).
         """
         return _checked(self.text, self._kinds(kinds))
 
@@ -137,8 +137,8 @@ class Relation:
         Raises
         ------
         FaultyText
-            With code `shape`, if arrays of different lengths are combined; `index`, if an index is outside
-            its array.
+            If arrays of different lengths are combined (code `shape`), or an index is outside its array (code
+            `index`).
         """
         if self.only_name:
             return values[self.only_name]
@@ -175,10 +175,10 @@ def parse(text: str) -> Relation:
     Raises
     ------
     FaultyText
-        With code `syntax` and the place, or `unknown_unit`, `unknown_function`.
+        The code is `syntax`, with the place, or `unknown_unit` or `unknown_function`.
     """
     if len(text) > MAX_LENGTH:
-        raise FaultyText("syntax", f"a relation must have at most {MAX_LENGTH} characters")
+        raise FaultyText("syntax", f"a relation may have at most {MAX_LENGTH} characters")
     body = text.strip().removeprefix("=")
     try:
         parsed = _parser.parse(body)
@@ -187,7 +187,7 @@ def parse(text: str) -> Relation:
     parts = sum(1 for _ in parsed.iter_subtrees())
     if parts > MAX_PARTS or height(parsed) > MAX_DEPTH:
         raise FaultyText(
-            "syntax", f"a relation must have at most {MAX_PARTS} parts, nested at most {MAX_DEPTH} deep"
+            "syntax", f"a relation may have at most {MAX_PARTS} parts, nested at most {MAX_DEPTH} deep"
         )
     tree, rounding = _rounded(parsed)
     nodes = list(nodes_of(tree))

@@ -54,7 +54,7 @@ class Rounding:
         Raises
         ------
         FaultyText
-            With code `unknown_unit`, or `out_of_range` if the step is not above 0.
+            If the unit is unknown (code `unknown_unit`), or the step is not above 0 (code `out_of_range`).
         """
         number, _, name = text.partition(" ")
         step = Fraction(number)

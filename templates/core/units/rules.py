@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from functools import cache
 from itertools import product as pairs_of
 from typing import Any
 
@@ -14,9 +13,11 @@ from templates.core.units.units import (
     compatible,
     difference_of,
     is_rate,
+    named_unit,
     radians,
     registry,
     unit,
+    unit_symbol,
 )
 
 RADIAN = registry.Unit("radian")
@@ -87,7 +88,9 @@ def _joined(sign: str, one: Kind, other: Kind, nodes: tuple[Any, ...]) -> Kind:
     turned = one.turned | other.turned
     if is_rate(one.base) and turned and len(counts) == 1:
         remedy = next(filter(None, map(_counted, nodes)), "multiply 1/s by 1 turn or by 1 rad")
-        raise FaultyText("unit_mismatch", f"{detail}: {' and '.join(sorted(turned))} counts turns; {remedy}")
+        raise FaultyText(
+            "unit_mismatch", f"{detail}: {' and '.join(sorted(turned))} is a number of turns; {remedy}"
+        )
     first = counts[0] if counts else one
     return Kind(first.base, first.cycles, turned=turned)
 
@@ -152,7 +155,7 @@ def as_compared(sign: str, other: Kind, node: Any, beside: Any) -> str:
     Raises
     ------
     FaultyText
-        With code `unit_mismatch`, if the other side is a value in K that may be either.
+        If the other side is a value in K that may be either; the code is `unit_mismatch`.
     """
     if not (text := literal(node)):
         return ""
@@ -302,12 +305,5 @@ def in_words(kind: Kind) -> str:
     """Return a kind as text, by a unit with its own name if there is one: `N` for `kg·m/s²`."""
     if is_rate(kind.base) and kind.cycles:
         return base_text(kind)
-    named = (name for name, base in _named().items() if base == kind.base)
-    return next(named, f"{kind.base:~P}") or "a pure number"
-
-
-@cache
-def _named() -> dict[str, Any]:
-    """Return the derived units with names of their own, such as N, keyed by their SI base units."""
-    names = ("N", "Pa", "N·m", "W", "Pa·s", "N/m", "N·m/rad", "W/(m·K)", "J/(kg·K)")
-    return {name: registry.Unit(registry.get_base_units(name.replace("·", "*"))[1]) for name in names}
+    name = named_unit(kind.base)
+    return unit_symbol(name) if name else f"{kind.base:~P}" or "a pure number"

@@ -54,7 +54,7 @@ def applied(operation: Operation, parts: Sequence[Part]) -> Part:
     Raises
     ------
     FaultyText
-        With code `unit_mismatch`, `no_truth`, `axis_mismatch`, `index` or `too_large`.
+        The code is `unit_mismatch`, `no_truth`, `axis_mismatch`, `index` or `too_large`.
     """
     sorts = [sort for _, sort in parts]
     axis, meeting = _axis(operation, sorts)
@@ -68,7 +68,7 @@ def sorted_by(operation: Operation, parts: Sequence[Part], axis: str = "") -> So
     Raises
     ------
     FaultyText
-        With code `unit_mismatch`, `no_truth`, `index` or `too_large`.
+        The code is `unit_mismatch`, `no_truth`, `index` or `too_large`.
     """
     nodes, sorts = tuple(node for node, _ in parts), [sort for _, sort in parts]
     truth = _truth(operation, sorts)
@@ -77,7 +77,7 @@ def sorted_by(operation: Operation, parts: Sequence[Part], axis: str = "") -> So
         raise FaultyText("too_large", f"an expression must be at most {MAX_NODES_DEEP} operations deep")
     size = 1 + sum(sort.size for sort in sorts)
     if size > MAX_NODES:
-        detail = f"an expression must have at most {MAX_NODES} operations, including those in its functions"
+        detail = f"an expression may have at most {MAX_NODES} operations, including those in its functions"
         raise FaultyText("too_large", detail)
     kind = operation.kind(operation, [sort.kind for sort in sorts], nodes)
     return Sort(kind, truth, axis, depth=depth, size=size)

@@ -178,7 +178,7 @@ def from_object(raw: Mapping[str, Any], name: str, declared: str, si: Value) -> 
     Raises
     ------
     FaultyText
-        With a code and a remedy.
+        If the tolerance is wrong; the error states a code and a remedy.
     """
     given = raw.keys() & KEYS
     if not given:

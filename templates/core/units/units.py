@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -179,9 +179,24 @@ class Measured(Protocol):
 
 
 def base_text(measured: Measured) -> str:
-    """Return the SI unit of a quantity in the form that `unit` reads: `kg/m/s**2`, `1`, `Hz`."""
+    """Return the SI unit of a quantity in the form that `unit` reads: `N*m`, `kg/m**4`, `1`, `Hz`."""
+    if name := named_unit(measured.base):
+        return name
     cycles = measured.cycles if is_rate(measured.base) else 0.0
     return f"{registry.Unit(measured.base * _CYCLE**cycles) if cycles else measured.base:~C}" or "1"
+
+
+def named_unit(base: pint.Unit) -> str | None:
+    """Return the unit that engineers use for base units, if there is one: `N*m` for `kg*m**2/s**2`."""
+    return _named().get(base)
+
+
+@cache
+def _named() -> dict[pint.Unit, str]:
+    names = (
+        "N", "Pa", "N*m", "W", "Pa*s", "N/m", "N*m/rad", "N*m*rad/s", "W/(m*K)", "J/(kg*K)",
+    )  # fmt: skip
+    return {registry.Unit(registry.get_base_units(name)[1]): name for name in names}
 
 
 def is_rate(base: pint.Unit) -> bool:

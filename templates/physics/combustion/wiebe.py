@@ -237,7 +237,7 @@ def four_stroke_angles(steps: Array) -> Array:
 
 @units("J", "J", "J", "J", returns="1", latex=r"\frac{{{0}-{1}-{2}}}{{{0}+{3}}}")
 def unbalanced_share(heat: Array, work: Array, change: Array, scale: Array) -> Array:
-    """Return heat minus work minus change of internal energy, over heat plus the charge's energy [1].
+    """Return (heat − work − change of internal energy)/(heat + energy of the charge) [1].
 
     Values below 1e-9 are returned as 0.
     """

@@ -138,7 +138,7 @@ def relative_change(elastic: Vectors, determinate: Vectors) -> Array:
 
 @units(None, None, "m", returns="1")
 def left_over(reactions: Vectors, loads: ShaftLoads, mains: Array) -> Array:
-    """Return the largest unbalanced force or moment, over the sum of magnitudes; 0 below 1e-12."""
+    """Return the largest unbalanced force or moment, divided by the sum of magnitudes; 0 below 1e-12."""
     size = np.abs(loads.forces).sum(axis=-2)
     size = np.where(size > 0, size, 1.0)
     force = np.abs(reactions.sum(axis=-2) + loads.forces.sum(axis=-2)) / size

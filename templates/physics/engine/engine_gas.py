@@ -64,7 +64,7 @@ class OffsetTabulatedCycle(TabulatedCycle):
     crank: OffsetCrank
 
     def mean_effective(self) -> Array:
-        """Return the work of a cycle over the swept volume [Pa]: −dp/dθ times the integral of travel."""
+        """Return the work of a cycle per swept volume [Pa]: −dp/dθ times the integral of travel."""
         width = np.diff(self.angle, append=self.angle[0] + self.cycle)
         count = 6 + int(np.ceil(_NODES_A_RADIAN * width.max()))
         node, weight = np.polynomial.legendre.leggauss(count)

@@ -151,7 +151,7 @@ class Polytropic(GasCycle):
         return self.v_dead + self.way(angle)
 
     def way(self, angle: Array | float) -> Array:
-        """Return the travel of the piston from top dead centre over its stroke, at one angle per point."""
+        """Return the travel of the piston from top dead centre per stroke, at one angle per point."""
         return _travel(angle, self.n)
 
     def way_between(self, begin: Array, end: Array) -> Array:
@@ -159,7 +159,7 @@ class Polytropic(GasCycle):
         return travel_integral(end, self.n) - travel_integral(begin, self.n)
 
     def mean_effective(self) -> Array:
-        """Return the work of all events in closed form, over the swept volume."""
+        """Return the work of all events in closed form, per swept volume."""
         c, dead = self.charge, self.v_dead
         end = np.maximum(self.exhaust_opens, self.emptied)
         return (

@@ -28,7 +28,7 @@ class GasCycle(ABC):
 
     @abstractmethod
     def mean_effective(self) -> Array:
-        """Return the work of the gas in a cycle over the swept volume [Pa], exact for any output angles."""
+        """Return the work of the gas in a cycle per swept volume [Pa], exact for any output angles."""
 
     @abstractmethod
     def corners(self) -> Array:
@@ -102,7 +102,7 @@ def pressure_at(gas: GasCycle, motion: Motion) -> Array:
 
 @units(None, returns="Pa")
 def mean_effective(gas: GasCycle) -> Array:
-    """Return the indicated mean effective pressure [Pa]: the work of a cycle over the swept volume."""
+    """Return the indicated mean effective pressure [Pa]: the work of a cycle per swept volume."""
     return np.asarray(gas.mean_effective())[()]
 
 

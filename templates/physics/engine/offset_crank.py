@@ -60,7 +60,7 @@ class OffsetCrank:
         return RodMotion(self, alpha)
 
     def travel(self, alpha: Array) -> Array:
-        """Return the travel of the piston from top dead centre over the stroke, at angles (…, N, K)."""
+        """Return the travel of the piston from top dead centre per stroke, at angles (…, N, K)."""
         return (self.highest[..., None] - self.at(alpha).x) / self.stroke[..., None]
 
 

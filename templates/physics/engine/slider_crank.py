@@ -46,7 +46,7 @@ class Motion:
 
     @cached_property
     def q(self) -> Array:
-        """Return the projection of the rod on the axis over the crank radius, n cos(phi)."""
+        """Return the projection of the rod on the cylinder axis, divided by the crank radius: n cos(phi)."""
         return np.sqrt((self.n - 1) * (self.n + 1) + self.cos**2)
 
     @cached_property
@@ -56,12 +56,12 @@ class Motion:
 
     @cached_property
     def travel(self) -> Array:
-        """Return the travel of the piston from top dead centre, over the stroke."""
+        """Return the travel of the piston from top dead centre, divided by the stroke."""
         return np.sin(self.theta / 2) ** 2 + self.sin**2 / (2 * (self.n + self.q))
 
     @cached_property
     def lever(self) -> Array:
-        """Return the torque over axial force and crank radius.
+        """Return the torque divided by the axial force and the crank radius.
 
         It equals −dx/dtheta of the piston divided by r.
         """
@@ -74,12 +74,12 @@ class Motion:
 
     @cached_property
     def rod_velocity(self) -> Array:
-        """Return d(phi)/d(theta)."""
+        """Return the angular velocity of the rod over that of the crank, d(phi)/d(theta)."""
         return self.cos / self.q
 
     @cached_property
     def rod_acceleration(self) -> Array:
-        """Return d²(phi)/d(theta)²."""
+        """Return the angular acceleration of the rod over omega², d²(phi)/d(theta)²."""
         return -(self.n - 1) * (self.n + 1) * self.sin / self.q**3
 
 

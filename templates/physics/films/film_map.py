@@ -193,7 +193,7 @@ def require_mapped(eps: Array, ratio: Array) -> None:
     Raises
     ------
     ValueError
-        Naming the argument and its limit.
+        If an argument is outside its range; the message names it and its limit.
     """
     require_film(eps, ratio)
     ratio = np.asarray(ratio)

@@ -123,7 +123,7 @@ def directions(phi: Array) -> Array:
 
 
 def gap(bore: Bore, lie: Lie, phi: Array, zeta: Array, side: int = 1) -> Array:
-    """Return the film thickness over the radial clearance at all angles and places, (angles, places).
+    """Return the film thickness divided by the radial clearance, at all angles and places, (angles, places).
 
     `Bore.around` explains which lobe counts where lobes meet.
     """

@@ -23,7 +23,7 @@ second.
 
 @units("m", "m", "m", returns="1", latex=r"\frac{{{0}}}{{\sqrt{{{1}^2+{2}^2}}}}")
 def film_parameter(h: Array, R_1: Array, R_2: Array) -> Array:
-    """Return the smallest film h over the composite roughness of the rms roughnesses R_1 and R_2 [-]."""
+    """Return the smallest film h, divided by the composite of the rms roughnesses R_1 and R_2 [-]."""
     roughness = np.hypot(R_1, R_2)
     return np.where(roughness > 0, h / np.where(roughness > 0, roughness, 1.0), np.nan)[()]
 

@@ -15,7 +15,8 @@ def require(accepted: Mask, complaint: str) -> None:
     Raises
     ------
     ValueError
-        With the given complaint, which names the argument and its limit.
+        If an element is not accepted; the message is the given complaint, which names the argument and its
+        limit.
     """
     if not np.all(accepted):
         raise ValueError(complaint)
@@ -29,7 +30,7 @@ def require_film(eps: Array, ratio: Array) -> None:
     Raises
     ------
     ValueError
-        Naming the argument and its limit.
+        If an argument is outside its range; the message names it and its limit.
     """
     eps, ratio = np.asarray(eps), np.asarray(ratio)
     require((eps >= 0) & (eps <= ECCENTRICITY_LIMIT), "eps must lie in [0, 1 - 1e-7]")

@@ -8,8 +8,8 @@ The film is massless and always full where it carries load, so it has no memory.
 solved at once, from a coarse ring of nodes to the finest, so the orbit is periodic to the tolerance of
 Newton's method, without run-in cycles. The method is of second order in the step, which is 1° or less, and a
 quarter of that if the error bound of the smallest gap exceeds 0.2 per cent. The intervals of the load are
-halved until they are short enough: nodes, result and bound do not change if the same load is given at twice
-as many angles.
+halved until they are short enough, so nodes, result and bound do not change if the same load is given at
+twice as many angles.
 
 References
 ----------

@@ -196,7 +196,7 @@ def _accepted(xi: Array, eta: Array, ratio: Array) -> tuple[Array, Array, Array]
     Raises
     ------
     ValueError
-        Naming the argument and its limit.
+        If an argument is outside its range; the message names it and its limit.
     """
     xi, eta, ratio = (np.asarray(x, float) for x in (xi, eta, ratio))
     inside = xi**2 + eta**2 <= (LARGEST + 4e-16) ** 2

@@ -62,7 +62,7 @@ def shear_flow_factor(u: Array, gamma: float = 1) -> Array:
 
 
 def mean_gap(u: Array) -> Array:
-    """Return the mean gap over sigma of rough, normally distributed surfaces, without overlaps [-]."""
+    """Return the mean gap over sigma [-] of rough, normally distributed surfaces, without overlaps."""
     return u * ndtr(u) + np.exp(-np.square(u) / 2) / np.sqrt(2 * np.pi)
 
 

@@ -24,7 +24,7 @@ APART = "pin and journal do not overlap: the webs bend, which Carter's formula a
 OVERLAPPING = "pin and journal overlap: the webs are short and stiff, which Ker Wilson's formula allows for"
 TOO_SHORT = (
     "pin and journal overlap, so Ker Wilson's formula is the nearer one; but the throw is too short even "
-    "for it (its web term is negative): take finite elements"
+    "for it (its web term is negative): use finite elements"
 )
 
 

@@ -40,7 +40,7 @@ OVERLAPPING = (
 )
 TOO_SHORT = (
     "pin and journal overlap, so Ker Wilson's formula is the nearer one; but the throw is too short even "
-    "for it (its web term is negative): take finite elements"
+    "for it (its web term is negative): use finite elements"
 )
 
 
@@ -54,9 +54,9 @@ def share_of_wilson(overlap: Array, journal: Array, pin: Array) -> Array:
 @units("1", "N*m/rad", "N*m/rad", returns="N*m/rad",
        latex=r"\left(\frac{{1-{0}}}{{{1}}}+\frac{{{0}}}{{{2}}}\right)^{{-1}}")  # fmt: skip
 def joined_stiffness(share: Array, carter: Array, wilson: Array) -> Array:
-    """Return the stiffness [N m/rad] whose flexibility blends Carter's with a share [1] of Ker Wilson's.
+    """Return the stiffness [N m/rad] between those of Carter and Ker Wilson: their flexibilities are blended.
 
-    If the share is 0 or 1 the result is exactly that of one formula.
+    `share` [1] is the weight of Ker Wilson's flexibility; 0 or 1 gives exactly the result of one formula.
     """
     joined = 1 / ((1 - share) / carter + share / wilson)
     return np.select([share <= 0, share >= 1], [carter, wilson], joined)[()]

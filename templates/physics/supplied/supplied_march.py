@@ -164,7 +164,7 @@ class State:
 
 
 def gap_at(mesh: Mesh, e: Array) -> Array:
-    """Return the gap over the radial clearance H at the nodes, (n,) [-]."""
+    """Return the gap H at the nodes, divided by the radial clearance, (n,) [-]."""
     return np.asarray(1 - e @ mesh.normal)
 
 
@@ -206,7 +206,7 @@ def stepped(mesh: Mesh, duty: Duty, states: list[State], h: float) -> State | No
 
 
 def _size(last: State, after: State, step: float) -> float:
-    """Return the size of a step over the best size, from the changes of the gap and of the velocity."""
+    """Return the ratio of a step to the best step, from the changes of the gap and of the velocity."""
     before, now = (1 - np.hypot(*state.e) for state in (last, after))
     gap = abs(np.log(now / before)) / GAP_CHANGE
     strayed = np.hypot(*(after.e - last.e - after.step * last.velocity)) / min(before, now)

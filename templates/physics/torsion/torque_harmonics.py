@@ -76,7 +76,7 @@ def is_one_cycle(theta: Array) -> bool:
 
 @units("rad", "N*m", returns="1")
 def closes(theta: Array, T: Array) -> bool:
-    """Return whether a last angle that closes the cycle has the first torque [N m], [..., angle]."""
+    """Return whether the last torque [N m], [..., angle], equals the first if its angle closes the cycle."""
     cycle = cycle_of(theta)
     if cycle is None or np.ndim(T) == 0 or np.shape(T)[-1] != cycle.count + 1:
         return True

@@ -13,9 +13,14 @@ def many(count):
     return {"value": [10.0 + number for number in range(count)], "unit": "kN"}
 
 
+COSTLY = {"cycle_heat_balance"}  # the balance needs several orbits, 0.2 s in all
+
+
 @pytest.mark.parametrize("cls", list(CATALOGUE), ids=lambda cls: f"{cls.id}_{cls.version}")
 def test_every_example_is_cheap_at_its_usual_level(cls):
-    assert 0 < estimated_seconds(cls, cls.example) < EXPENSIVE
+    seconds = estimated_seconds(cls, cls.example)
+    assert 0 < seconds < (1.0 if cls.id in COSTLY else EXPENSIVE)
+    assert (seconds > EXPENSIVE) == (cls.id in COSTLY)
 
 
 @pytest.mark.parametrize(

@@ -173,7 +173,7 @@ class TestSolve:
         body = {
             "inputs": inputs,
             "unknown": "bearing_width",
-            "bounds": ["10 mm", "80 mm"],
+            "between": ["10 mm", "80 mm"],
             "target": self.TARGET,
         }
         return http.post(f"{FILM}/solve", json={**body, **change})
@@ -187,10 +187,12 @@ class TestSolve:
     def test_all_roots_with_the_curve_between_them(self, http):
         """The paper's film has two clearances; `unknown` stays the lowest, and a warning names the other."""
         inputs = {name: value for name, value in OIL_FILM.items() if name != "diametral_clearance"}
-        change = {"inputs": inputs, "unknown": "diametral_clearance", "bounds": ["2 um", "0.5 mm"]}
+        change = {"inputs": inputs, "unknown": "diametral_clearance", "between": ["2 um", "0.5 mm"]}
         answer = self.solve(http, **change).json()
         assert [root["value"] for root in answer["roots"]] == pytest.approx([0.0471975, 0.0550021], rel=1e-5)
-        assert [(root["unit"], root["slope"]) for root in answer["roots"]] == [("mm", 1), ("mm", -1)]
+        assert [root["crossing"] for root in answer["roots"]] == ["rises", "falls"]
+        assert {(root["unit"], root["slope"]["unit"]) for root in answer["roots"]} == {("mm", "um/mm")}
+        assert [root["slope"]["value"] > 0 for root in answer["roots"]] == [True, False]
         assert all(0 < root["error"] < 1 and root["confirmed"] for root in answer["roots"])
         assert answer["unknown"] == {"value": answer["roots"][0]["value"], "unit": "mm"}
         assert "0.0550021 mm give the target too" in answer["warnings"][-1]["detail"]
@@ -201,7 +203,7 @@ class TestSolve:
 
     def test_points_that_are_refused_have_their_reason_in_the_curve(self, http):
         inputs = {name: value for name, value in OIL_FILM.items() if name != "diametral_clearance"}
-        change = {"inputs": inputs, "unknown": "diametral_clearance", "bounds": ["-0.1 mm", "0.5 mm"]}
+        change = {"inputs": inputs, "unknown": "diametral_clearance", "between": ["-0.1 mm", "0.5 mm"]}
         answer = self.solve(http, **change).json()
         values, reasons = answer["curve"]["y"]["value"], answer["curve"]["reasons"]
         assert [value is None for value in values] == [reason is not None for reason in reasons]
@@ -218,10 +220,10 @@ class TestSolve:
         "change",
         [
             {"unknown": "nothing"},
-            {"bounds": ["80 mm"]},
-            {"bounds": ["10 mm", "80 kN"]},
-            {"bounds": [True, None]},
-            {"bounds": ["10 mm", "10 mm"]},
+            {"between": ["80 mm"]},
+            {"between": ["10 mm", "80 kN"]},
+            {"between": [True, None]},
+            {"between": ["10 mm", "10 mm"]},
             {"target": {}},
             {"target": {"nothing": "1"}},
             {"target": {"minimum_film_thickness": "3 kN"}},

@@ -11,7 +11,8 @@ from app.designs.document import Document
 from app.designs.engine.calculate import calculate
 from app.designs.explanation import explained
 from app.designs.graph import build_graph
-from app.designs.slopes import Local, slope_in, slopes_at
+from app.designs.slopes import Local, slopes_at
+from app.schemas.slopes import slope_in
 from app.storage.errors import NotFound
 
 PETROV = {

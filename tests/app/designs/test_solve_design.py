@@ -65,7 +65,7 @@ def test_analytic_power_grows_with_the_square_of_the_speed_and_the_cube_of_the_r
     ):
         solution = asked(PETROFF, unknown, low, high, "idle.power_loss", fourfold)
         assert [root.value for root in solution.roots] == [pytest.approx(expected, rel=1e-12)]
-        assert (solution.roots[0].slope, solution.touching, solution.jumps) == (1, [], [])
+        assert (solution.roots[0].crossing, solution.touching, solution.jumps) == ("rises", [], [])
         assert solution.revision == 7
 
 
@@ -81,7 +81,7 @@ def test_both_clearances_of_one_film_are_found_through_a_chain_of_relations():
     assert len(solution.roots) == 2
     expected = [root.value - 0.001 for root in alone.roots]
     assert [root.value for root in solution.roots] == pytest.approx(expected, rel=1e-9)
-    assert [root.slope for root in solution.roots] == [1, -1]
+    assert [root.crossing for root in solution.roots] == ["rises", "falls"]
     assert {root.level for root in solution.roots} == {alone.roots[0].level}
 
 

@@ -56,6 +56,22 @@ def test_every_operation_says_what_it_does(operations):
     assert len({operation["operationId"] for operation in operations.values()}) == len(operations)
 
 
+def test_titles_are_distinct(operations):
+    titles = [operation["summary"] for operation in operations.values()]
+    assert [title for title in titles if titles.count(title) > 1] == []
+
+
+def test_tags_follow_the_path_of_a_user(document, operations):
+    """Every tag is described, is used, and stands where a user meets it; operating the service comes last."""
+    order = [tag["name"] for tag in document["tags"]]
+    assert {tag for operation in operations.values() for tag in operation["tags"]} == set(order)
+    assert all(tag["description"] for tag in document["tags"])
+    path = ["templates", "designs", "variants", "files", "reports", "studies", "approvals", "models", "jobs"]
+    assert [tag for tag in order if tag in path] == path
+    assert order[-1] == "operations"
+    assert all(len(operation["tags"]) == 1 for operation in operations.values())
+
+
 def test_every_operation_says_what_it_answers(operations):
     for name, operation in operations.items():
         assert "4XX" in operation["responses"], name
@@ -218,7 +234,7 @@ EVALUATE = {"inputs": OIL_FILM}
 SOLVE = {
     "inputs": {name: value for name, value in OIL_FILM.items() if name != "bearing_width"},
     "unknown": "bearing_width",
-    "bounds": ["10 mm", "80 mm"],
+    "between": ["10 mm", "80 mm"],
     "target": {"minimum_film_thickness": "3.2449 um"},
 }
 LOADS = {"inputs": {**OIL_FILM, "radial_load": {"value": [25, 1e9], "unit": "kN"}}}

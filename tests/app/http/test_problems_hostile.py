@@ -195,7 +195,7 @@ class TestEvaluate:
         assert len(faults(post(http, f"{FILM}/evaluate", body))) >= 2000
 
     def test_solve(self, http):
-        body = {"inputs": OIL_FILM, "unknown": "bearing_width", "bounds": [], "target": {"density": []}}
+        body = {"inputs": OIL_FILM, "unknown": "bearing_width", "between": [], "target": {"density": []}}
         assert faults(post(http, f"{FILM}/solve", json.dumps(body)))
 
 

@@ -117,7 +117,7 @@ def test_a_unit_that_fails_leaves_no_row(database):
         ("update audit set name = x'ff' where seq = 3", "row 3 (design.change of designs/d/revisions/2 by b"),
         (
             "update audit set name = cast(x'ff' as text) where seq = 3",
-            "row 3 was changed: it holds what is not text",
+            "row 3 was changed: one of its values is not text",
         ),
     ],
 )
@@ -135,9 +135,9 @@ def test_a_broken_row_is_named(database, url, statement, fault):
         ("seq = 5.5", "row 5.5 (design.change of designs/d/revisions/4"),
         (f"seq = {2**63 - 1}", f"comes row {2**63 - 1} (design.change of designs/d/revisions/4"),
         ("hash = x'ff'", "row 5 (design.change of designs/d/revisions/4"),
-        ("hash = cast(x'ff' as text)", "row 5 was changed: it holds what is not text"),
+        ("hash = cast(x'ff' as text)", "row 5 was changed: one of its values is not text"),
         ("hash = null", "row 5 (design.change of designs/d/revisions/4"),
-        ("name = cast(x'ff' as text)", "row 5 was changed: it holds what is not text"),
+        ("name = cast(x'ff' as text)", "row 5 was changed: one of its values is not text"),
     ],
 )
 def test_a_broken_newest_row_is_named_and_does_not_stop_the_sealer(database, url, change, fault):
@@ -159,7 +159,7 @@ def test_a_broken_row_that_waits_is_named_and_those_behind_it_are_sealed(databas
     assert Sealer(database).run() == 0
     result = verified(database)
     assert (result.head.seq, result.unsealed) == (7, 1)
-    assert result.fault == "a row behind row 7, not sealed, holds what is not text"
+    assert result.fault == "an unsealed row after row 7 has a value that is not text"
 
 
 def test_a_row_that_was_put_in_is_named(database, url):
@@ -184,7 +184,7 @@ def test_a_row_with_a_right_hash_in_the_place_of_another_is_named(database, url)
     forged = chain.hash_of(row, 3, row.previous)
     tamper(url, f"update audit set name = 'Eve', hash = '{forged}' where seq = 3")
     assert "row 4" in verified(database).fault
-    assert "was inserted, or the row before it was replaced" in verified(database).fault
+    assert "was inserted, or row 3 was replaced" in verified(database).fault
 
 
 def test_rows_cut_off_at_the_end_show_against_an_exported_head(database, url):

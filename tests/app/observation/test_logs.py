@@ -75,7 +75,7 @@ def test_a_folder_with_other_files_is_left_as_it_is(logged):
     assert second.exit_code == 1
     assert f"process {server.process.pid}" in second.output
     assert str(data) in second.output
-    assert f"{server.port}/docs" in text
+    assert f":{server.port}, data in" in text
 
 
 def test_one_id_in_header_problem_and_line(logged):

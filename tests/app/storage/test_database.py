@@ -179,7 +179,7 @@ def test_a_write_may_be_waited_for_later(database):
 
 
 def test_a_unit_may_not_wait_for_another(database):
-    with pytest.raises(RuntimeError, match="use its session"):
+    with pytest.raises(RuntimeError, match="use the session of the running unit"):
         database.write(lambda session: database.write(adding("a")))
 
 

@@ -45,9 +45,12 @@ NO_NUMBER_OF_ROWS = [
         ({"vary": {"clear": {"between": ["1 mm", "2 mm"]}}, "steps": 3}, {"clear": "unknown_name"}),
         (
             {"vary": {"clearance": {"between": ["1 mm", "1 mm"]}}, "steps": 3},
-            {"vary.clearance": "empty_interval"},
+            {"vary.clearance": "not_ascending"},
         ),
-        ({"vary": {"clearance": {"between": ["2 mm", "1 mm"]}}, "steps": 3}, {"vary.clearance": "bounds"}),
+        (
+            {"vary": {"clearance": {"between": ["2 mm", "1 mm"]}}, "steps": 3},
+            {"vary.clearance": "not_ascending"},
+        ),
         ({"vary": {"clearance": {"between": ["1 N", "1 mm"]}}, "steps": 3}, {"vary.clearance": "wrong_unit"}),
         ({"vary": {"clearance": {"between": [1, 2]}}, "steps": 3}, {"vary.clearance": "missing_unit"}),
         ({"vary": CLEARANCE, "steps": 10**6 + 1}, {"steps": "too_many_rows"}),

@@ -51,7 +51,7 @@ class TestTemplates:
         assert answer["template"]["digest"] == bush["digest"]
         target = {"projected_pressure": f"{PRESSURE} MPa"}
         body = {"inputs": {"radial_load": "20 kN"}, "target": target}
-        body |= {"unknown": "bearing_diameter", "bounds": ["10 mm", "100 mm"]}
+        body |= {"unknown": "bearing_diameter", "between": ["10 mm", "100 mm"]}
         solved = http.post(version(bush["id"], 1, "solve"), json=body).json()
         assert solved["unknown"]["value"] == pytest.approx(50)
         written = http.post(version(bush["id"], 1, "worksheet"), json={"inputs": INPUTS})

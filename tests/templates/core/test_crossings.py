@@ -29,4 +29,4 @@ def test_a_jump_has_the_values_beside_it_or_else_of_its_samples(beside, sides):
 def test_a_root_has_the_direction_in_which_the_output_crosses():
     place = _closed(curve(lambda x: 3 * x - 5.0, []), SAMPLES, 1)
     assert isinstance(place, Place)
-    assert (place.x, place.slope) == (pytest.approx(5 / 3), 1)
+    assert (place.x, place.crossing) == (pytest.approx(5 / 3), "rises")

@@ -69,7 +69,7 @@ class TestRoots:
     def test_analytic_all_with_the_signs_of_their_slopes(self):
         result = solved("quartic", 0, **zeros([-7.0, -1.5, 0.25, 6.0]))
         assert found(result) == pytest.approx([-7, -1.5, 0.25, 6], abs=1e-12)
-        assert [root.slope for root in result.roots] == [-1, 1, -1, 1]
+        assert [root.crossing for root in result.roots] == ["falls", "rises", "falls", "rises"]
         assert result.unknown == result.roots[0].value
         (warning,) = [w for w in result.warnings if w.code == "several_solutions"]
         assert "-1.5 m, 0.25 m, 6 m give the target too" in warning.detail
@@ -90,7 +90,10 @@ class TestRoots:
         assert [root.value for root in result.touching] == pytest.approx([1, 2], abs=1e-6)
         assert result.roots == []
         assert result.unknown == result.touching[0].value
-        assert {root.slope for root in result.touching} == {0}
+        assert {root.crossing for root in result.touching} == {"touches"}
+        assert {(root.slope, root.no_slope) for root in result.touching} == {
+            (None, "the output touches the target without crossing it")
+        }
 
     @pytest.mark.parametrize(("target", "count"), [(0.999_999, 2), (1.000_001, 0)])
     def test_analytic_a_hair_below_and_above_the_top(self, target, count):
@@ -102,7 +105,9 @@ class TestRoots:
 
     def test_analytic_a_value_at_all_samples_is_one_solution(self):
         result = solved("flat", 1)
-        assert [(root.value, root.slope) for root in result.roots] == [(-10.0, 0)]
+        (root,) = result.roots
+        assert (root.value, root.crossing) == (-10.0, "touches")
+        assert (root.slope, root.no_slope) == (None, "the output is flat here")
         assert [warning.code for warning in result.warnings] == ["at_bound"]
 
     def test_analytic_jumps_across_the_target(self):
@@ -169,7 +174,7 @@ class TestFilm:
         (crossed,) = (dense[np.flatnonzero(np.diff(above.astype(int)))],)
         assert len(found(result)) == len(crossed) == 2
         assert found(result) == pytest.approx(crossed, rel=5e-4)
-        assert [root.slope for root in result.roots] == [1, -1]
+        assert [root.crossing for root in result.roots] == ["rises", "falls"]
         for root in result.roots:
             assert 0 < root.error < 0.3
             again = evaluate(cls, {**raw, "diametral_clearance": f"{root.value!r} mm"}, outputs=[thickness])

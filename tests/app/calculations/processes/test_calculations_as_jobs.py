@@ -102,7 +102,7 @@ WRONG = [
         {"x", "units.minimum_film_thickness"},
     ),
     ("solve", {"unknown": "width", "target": {"y": "1 mm"}}, {"unknown", "target.y", "inputs.bearing_width"}),
-    ("solve", {"bounds": ["80 mm", "10 mm"]}, {"bounds"}),
+    ("solve", {"between": ["80 mm", "10 mm"]}, {"between"}),
 ]
 
 

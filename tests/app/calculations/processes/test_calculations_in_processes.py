@@ -58,7 +58,7 @@ def test_a_solution_is_that_of_this_process(http):
     body = {
         "inputs": {name: value for name, value in FILM.example.items() if name != "bearing_width"},
         "unknown": "bearing_width",
-        "bounds": ["10 mm", "40 mm"],
+        "between": ["10 mm", "40 mm"],
         "target": {"minimum_film_thickness": "2 um"},
         "level": "map",
     }

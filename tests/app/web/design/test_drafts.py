@@ -47,3 +47,18 @@ def test_what_is_saved_at_once_after_it_was_typed_is_no_draft_afterwards(open_de
     expect(page.get_by_label("scale", exact=True)).to_have_value("1.01")
     expect(page.locator("[data-trouble]")).to_be_hidden()
     assert page.evaluate("Object.keys(sessionStorage)") == []
+
+
+@pytest.mark.slow
+def test_a_revision_that_another_form_of_the_page_saved_is_no_news_to_its_user(open_design):
+    page = open_design
+    load(page).fill("31 kN")
+    expect(page.locator("[data-draft]")).to_be_visible()
+    page.get_by_text("Add a parameter, a template, a model").click()
+    page.get_by_label("Name of the parameter").fill("gap")
+    page.get_by_label("Value of the parameter").fill("55 um")
+    page.get_by_role("button", name="Add parameter").click()
+    expect(page.locator(".page-head")).to_contain_text("revision 2", timeout=PATIENCE)
+    expect(load(page)).to_have_value("31 kN")
+    expect(page.locator("[data-state]")).to_contain_text("not saved", timeout=PATIENCE)
+    expect(page.locator("[data-trouble]")).to_be_hidden()

@@ -137,3 +137,23 @@ def test_a_fault_is_a_link_to_its_field(watched, http):
     link.click()
     expect(page.get_by_label("Radial load")).to_be_focused()
     expect(page.get_by_label("Radial load")).to_be_in_viewport()
+
+
+@pytest.mark.slow
+def test_a_decimal_comma_is_accepted_where_the_language_of_the_browser_has_one(browser, served):
+    context = browser.new_context(locale="de-DE")
+    page = context.new_page()
+    page.goto(f"{served.url}/templates/third/1")
+    length, third = (
+        page.get_by_label("Whole length"),
+        page.locator('[data-output=".third_of_the_length"] .number'),
+    )
+    length.fill("10,5 mm")
+    expect(third).to_have_text("3.5")
+    page.get_by_role("button", name="Calculate").click()
+    expect(length).to_have_value("10.5 mm")
+    expect(third).to_have_text("3.5")
+    points = "(texts) => import('/static/shared/typed.js').then(({ withPoints }) => texts.map(withPoints))"
+    texts = ["0,5 ± 0,1 kN", "0,5 0,6 mm", "= max(0,5)", "[1,2] mm", "1,000,000 N", "1,5.2", "SAE 30"]
+    assert page.evaluate(points, texts) == ["0.5 ± 0.1 kN", "0.5 0.6 mm", *texts[2:]]
+    context.close()

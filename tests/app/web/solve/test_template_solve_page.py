@@ -42,7 +42,7 @@ def page_of(http, path=PAGE, **query):
 
 def solved_by_the_interface(http):
     inputs = {name: text for name, text in INPUTS.items() if name != "speed"}
-    body = {"inputs": inputs, "unknown": "speed", "bounds": ["100 rpm", "20000 rpm"]}
+    body = {"inputs": inputs, "unknown": "speed", "between": ["100 rpm", "20000 rpm"]}
     answer = http.post(
         f"{API}{PAGE.replace('/1/', '/versions/1/')}", json={**body, "target": {"power_loss": "50 W"}}
     )
@@ -94,7 +94,7 @@ def test_every_root_is_listed_and_none_preferred(http):
     typed = {name: text for name, text in example.items() if isinstance(text, str)}
     bounds, target = ["2 um", "0.5 mm"], {"minimum_film_thickness": "2 um"}
     inputs = {name: text for name, text in typed.items() if name != "diametral_clearance"}
-    body = {"inputs": inputs, "unknown": "diametral_clearance", "bounds": bounds, "target": target}
+    body = {"inputs": inputs, "unknown": "diametral_clearance", "between": bounds, "target": target}
     path = f"{API}/templates/oil_film/versions/2/solve"
     answer = http.post(path, json={**body, "level": "map"}, headers={"Prefer": "wait=30"}).json()
     assert len(answer["roots"]) > 1

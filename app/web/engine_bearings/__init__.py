@@ -1,0 +1,1 @@
+"""The page that sizes the bearings of an engine: fields, proposed values, and the design built from them."""
