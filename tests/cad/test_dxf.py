@@ -40,7 +40,6 @@ OF_NONE = {
     "relief_height",
     "flange_thickness",
     "free_spread",
-    "reduction_height",
     "oil_groove_angle",
     "reduction_height",
 }
