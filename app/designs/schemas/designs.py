@@ -86,7 +86,7 @@ class DesignTable(Answer):
     changes: bool = Field(False, description="whether each row also shows its change from the first row")
 
 
-class AssumedValue(Answer):
+class DesignAssumption(Answer):
     """A proposed value that a parameter still has."""
 
     value: Given
@@ -140,7 +140,7 @@ class Design(Answer):
     table: DesignTable | None = Field(
         None, description="the table of results; absent if its columns are the main results of the templates"
     )
-    assumed: dict[str, AssumedValue] = Field(
+    assumed: dict[str, DesignAssumption] = Field(
         {}, description="parameters whose values were proposed and not changed; absent if there are none"
     )
     results: DesignResults | None = Field(
@@ -244,7 +244,7 @@ class Revision(Answer):
     steps: dict[str, RevisionStep]
     models: dict[str, RevisionModel]
     iterations: list[Round]
-    assumed: dict[str, AssumedValue] = Field(
+    assumed: dict[str, DesignAssumption] = Field(
         {}, description="parameters whose values were proposed and not changed; absent if there are none"
     )
     rounded: list[RoundedValue] = Field([], description="rounded values; absent if there are none")

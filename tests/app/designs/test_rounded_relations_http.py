@@ -124,7 +124,7 @@ def test_an_iteration_that_alternates_between_two_multiples_names_the_rounding(h
     design = created(http, document)
     assert design["state"] == "failed"
     detail = design["problem"]["detail"]
-    assert "model.size (rounded to 10 mm) may alternate between two multiples: take a smaller step" in detail
+    assert "model.size (rounded to 10 mm) may alternate between two multiples: use a smaller step" in detail
 
 
 def test_an_iteration_settles_on_a_chosen_size(http):

@@ -60,5 +60,5 @@ def test_a_revision_that_another_form_of_the_page_saved_is_no_news_to_its_user(o
     page.get_by_role("button", name="Add parameter").click()
     expect(page.locator(".page-head")).to_contain_text("revision 2", timeout=PATIENCE)
     expect(load(page)).to_have_value("31 kN")
-    expect(page.locator("[data-state]")).to_contain_text("not saved", timeout=PATIENCE)
+    expect(page.locator("[data-draft]")).to_be_visible(timeout=PATIENCE)
     expect(page.locator("[data-trouble]")).to_be_hidden()
