@@ -28,7 +28,7 @@ def test_property_each_schema_has_its_own_declarations():
     [
         (Quantity(value=25.0, unit="kN"), "25 kN"),
         (Output(value=None, reason="no load"), "no load"),
-        (Output(value=[1.0, None], unit="mm**2/s"), "[1, None] mm²/s"),
+        (Output(value=[1.0, None], unit="mm**2/s"), "[1, –] mm²/s"),
         (Output(value="full_film"), "full_film"),
         (Shown(value=48.0, unit="mm", upper=0.025, lower=0.0, zone="H7"), "48 mm H7 (+0.025 +0)"),
     ],
