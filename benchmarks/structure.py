@@ -26,6 +26,7 @@ RESOURCE = frozenset({"routes", "schemas", "bodies", "views", "repository", "ser
 """The files of a resource: the same names in each folder, however short."""
 
 REASONS: dict[str, str] = {
+    "app.http.answer_examples": "reads the recorded answers, which a script writes",
     "app.pool.turns": "the rule of turns between clients alone, tested by itself",
     "app.client.approval_operations": "the calls on one resource, as every resource has them in the client",
     "app.client.identity_operations": "the calls on one resource, as every resource has them in the client",

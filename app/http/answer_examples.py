@@ -8,15 +8,18 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
+
+from app.plain import JsonObject
 
 EXAMPLES = Path(__file__).with_name("answer_examples.json")
 ANSWERED = ("200", "201")
+Part = JsonObject
+"""A part of the OpenAPI document, or an answer."""
 
 
-def add_examples(document: dict[str, Any]) -> None:
+def add_examples(document: Part) -> None:
     """Add an example to each JSON answer of the document; each example is written once."""
-    recorded: dict[str, Any] = json.loads(EXAMPLES.read_text(encoding="utf-8"))
+    recorded: Part = json.loads(EXAMPLES.read_text(encoding="utf-8"))
     used = set[str]()
     for item in document["paths"].values():
         for operation in item.values():
@@ -24,7 +27,7 @@ def add_examples(document: dict[str, Any]) -> None:
     document["components"]["examples"] = {name: {"value": recorded[name]} for name in sorted(used)}
 
 
-def _refer(operation: dict[str, Any], recorded: dict[str, Any]) -> list[str]:
+def _refer(operation: Part, recorded: Part) -> list[str]:
     """Refer from the answers of an operation to their examples; return the names of these."""
     names = list[str]()
     for status in ANSWERED:
@@ -36,7 +39,7 @@ def _refer(operation: dict[str, Any], recorded: dict[str, Any]) -> list[str]:
     return names
 
 
-def example_names(schema: dict[str, Any], operation: str) -> list[str]:
+def example_names(schema: Part, operation: str) -> list[str]:
     """Return the names of the examples of a schema: those of its models, or that of the operation."""
     models = [one["$ref"].rpartition("/")[2] for one in schema.get("anyOf", [schema]) if "$ref" in one]
     return models or [operation]

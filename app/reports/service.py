@@ -17,13 +17,12 @@ from sqlalchemy.orm import Session
 from app.approvals.content import shown, steps_taken
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository, stamps, views
-from app.designs.document import Document
+from app.designs.document import Document, StoredDocument
 from app.designs.schemas import designs as schemas
 from app.designs.solid_fields import fields_of
 from app.designs.variants.table import applied
 from app.designs.variants.views import variants
 from app.designs.worksheet import worksheet
-from app.plain import JsonObject
 from app.presentation.numbers import rounded
 from app.presentation.units import System
 from app.reports.cells import Cell, cell, clean, typed
@@ -157,7 +156,7 @@ class Reports:
         self,
         row: RevisionRow,
         revision: schemas.Revision,
-        document: JsonObject,
+        document: StoredDocument,
         system: System,
         *,
         pending: bool,

@@ -81,7 +81,7 @@ def test_numbers_without_headings_and_pure_numbers_are_read():
         ('a;b\n"1;2\n', "row 2"),
         ("1;" * 33 + "1\n", "at most 32 columns"),
         ("1\n" * (MOST_ROWS + 3), "at most 10000 rows"),
-        ("1" * (MOST_CHARACTERS + 1), "at most 1000000 characters"),
+        ("1" * (MOST_CHARACTERS + 1), "at most 1000000"),
     ],
 )  # fmt: skip
 def test_what_is_wrong_is_named_by_row_and_column(text, wanted):

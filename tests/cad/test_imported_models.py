@@ -20,7 +20,7 @@ from cad.imported_models import (
     role_of,
     tried,
 )
-from cad.model import Part
+from cad.model import Part, arrays_of_points
 from cad.model_classes import class_of, description_of
 from cad.regenerate import as_text, build_key, regenerate_shape
 from cad.statements import read_statements
@@ -67,10 +67,15 @@ def test_another_file_is_another_build():
     assert build_key(other.from_quantities({})) != build_key(shape())
 
 
-@pytest.mark.parametrize("bore", ["-1 mm", "2 m", "5 kg", "[1, 2] mm"])
+@pytest.mark.parametrize("bore", ["-1 mm", "2 m", "5 kg"])
 def test_a_value_out_of_bounds_is_refused(bore):
     with pytest.raises(InvalidInputs):
         shape(bore=bore)
+
+
+def test_a_list_of_bores_is_no_part():
+    [fault] = arrays_of_points(shape(bore="[20, 21] mm"))
+    assert fault.name == "bore"
 
 
 def test_what_was_drawn_is_checked_like_any_model(tmp_path):

@@ -47,6 +47,7 @@ __all__ = [
 ]  # fmt: skip
 
 _PATTERN = re.compile(rf"([+-]?{NUMBER})\s*(.*)", re.DOTALL)  # matches a stripped text
+_SINGLE = re.compile(rf"[+-]?{NUMBER}(?: ?[A-Za-zµμ°%Ω][^\s;,]*)?")  # the usual form, and never a list
 _ABSOLUTE = re.compile(r"(?<![\w°])(?:degC|degF|°C|°F|celsius|fahrenheit|degree_?[CF]\w*)(?!\w)")
 _DEEPEST = 4  # axes of an array
 _DECIMAL_COMMA = re.compile(r"(?<![0-9.,])((?:[0-9]{1,3}(?:\.[0-9]{3}){1,6}|[0-9]*)),([0-9]+)(?![0-9.,])")
@@ -163,7 +164,7 @@ def _own_unit(raw: Any) -> str:
             break
         raw = raw[0]
     match raw:
-        case str() if items := listed(raw):
+        case str() if items := _listed(raw):
             return items.unit or "1"
         case str() if parts := _parted(_with_points(raw)):
             written = split(parts[1])
@@ -173,9 +174,14 @@ def _own_unit(raw: Any) -> str:
     return "1"
 
 
+def _listed(text: str) -> TypedList | None:
+    """Return the list of numbers in a text; None if it is a single quantity or something else."""
+    return None if _SINGLE.fullmatch(text) else listed(text)
+
+
 @lru_cache(maxsize=4096)  # a user who varies one input sends the others again
 def _read_text(text: str, declared: str) -> TypedQuantity:
-    if items := listed(text):
+    if items := _listed(text):
         return _read_items(items, declared)
     _refuse_decimal_comma(text, declared)
     if not (parts := _parted(text)):

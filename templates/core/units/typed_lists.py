@@ -60,6 +60,8 @@ def _open(text: str) -> TypedList | None:
     items = _items(text)
     count = next((place for place, item in enumerate(items) if not _SIGNED.fullmatch(item)), len(items))
     numbers, unit = items[:count], " ".join(items[count:])
+    if len(numbers) == 2 and numbers[1] == "1" and not unit and ";" not in text:
+        return None  # a pure number with its unit: `0.3 1`
     are_deviations = ";" not in text and all(item[0] in "+-" for item in numbers[1:])
     if len(numbers) < 2 or are_deviations or (unit and not _UNIT.fullmatch(unit)):
         return None

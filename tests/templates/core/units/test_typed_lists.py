@@ -96,3 +96,9 @@ def test_a_long_text_is_read_in_linear_time(part):
     except FaultyText:
         pass
     assert time.process_time() - began < 1, "a quadratic reader takes minutes"
+
+
+def test_a_pure_number_with_its_unit_is_no_list():
+    assert read("0.3 1", "1").si == 0.3
+    assert read_any("0.3 1").si == 0.3
+    assert listed("0.3; 1") is not None
