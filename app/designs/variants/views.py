@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from sqlalchemy.orm import Session
@@ -25,10 +25,10 @@ from app.designs.schemas.variants import (
 )
 from app.designs.variants.columns import columns
 from app.designs.variants.names import BASE, natural
+from app.designs.variants.verdict import VARIANT
 from app.plain import Json, JsonObject
 from app.solids import measures, rows
 from app.storage.tables import BuildRow, RevisionModelRow, RevisionRow
-from templates.core.criteria.comparison import WORST_FIRST
 from templates.core.errors import InvalidInputs, unknown_names
 
 
@@ -56,10 +56,9 @@ def variants(
     results = [table.row(name, outputs) for name in names]
     base = table.row(BASE, outputs) if BASE in table.stored else None
     everybody = [*([base] if base else []), *results]
-    worst = _governing(everybody)
+    worst = _governing((row.results or {}).get("criteria", ())) if table.stored else {}
     parts: JsonObject = {"base": base, "by_criterion": worst or None, "problem": row.problem}
-    checked = [one for one in worst.values() if one.verdict != "not_checked"]
-    governing = min(checked, key=_rank_of_governing, default=None)
+    governing = next((one for one in worst.values() if one.verdict != "not_checked"), None)
     document = Document.model_validate(row.document)
     graph, _ = build_graph(document, catalogues)
     parts |= {"governing": governing, "table": _results(row, everybody, document, graph, governing)}
@@ -120,7 +119,7 @@ class _Table:
             model.name.removeprefix(f"{name}."): self._model(model, result.get("failures", {}))
             for model in self.models.get(name, ())
         }
-        parts: JsonObject = {
+        parts: dict[str, object] = {
             **{part: result[part] for part in ("criteria", "verdict", "problem", ROUNDED) if part in result},
             **({"outputs": dict(_chosen(result, outputs))} if outputs else {}),
         }
@@ -171,21 +170,13 @@ def _chosen(result: JsonObject, outputs: Collection[str]) -> Iterator[tuple[str,
     yield from ((name, stored[name]) for name in outputs if name in stored)
 
 
-def _governing(results: Collection[VariantResult]) -> dict[str, GoverningVariant]:
-    """Return the worst variant of each criterion; of several equally bad ones the first."""
+def _governing(criteria: Iterable[JsonObject]) -> dict[str, GoverningVariant]:
+    """Return the worst variant of each criterion, worst criterion first, as the revision stores them."""
     worst: dict[str, GoverningVariant] = {}
-    for result in results:
-        for criterion in result.criteria:
-            more = {} if criterion.utilisation is None else {"utilisation": criterion.utilisation}
-            one = GoverningVariant(
-                variant=result.name, criterion=criterion.name, verdict=criterion.verdict, **more
-            )
-            worse = worst.get(criterion.name)
-            if worse is None or _rank_of_governing(one) < _rank_of_governing(worse):
-                worst[criterion.name] = one
+    for one in criteria:
+        used = one.get("utilisation")
+        more = {} if used is None else {"utilisation": used}
+        worst[one["name"]] = GoverningVariant(
+            variant=one["where"][VARIANT], criterion=one["name"], verdict=one["verdict"], **more
+        )
     return worst
-
-
-def _rank_of_governing(one: GoverningVariant) -> tuple[int, float]:
-    """Return a sort key that places the worst first."""
-    return WORST_FIRST.index(one.verdict), -(one.utilisation or 0.0)
