@@ -152,6 +152,7 @@ def measure(row: Row, levels: Iterable[Level]) -> None:
             "mesh": mesh_of(level),
             "elements": grid.mesh.ne,
             "is sharp": grid.is_sharp,
+            "is resolved": grid.is_resolved,
             "low": values[fineness, level.order - 1],
             "high": values[fineness, level.order],
         }
@@ -197,14 +198,15 @@ def judged(row: Row, level: Level, name: str, *, is_sharp: bool) -> dict[str, fl
 
     The last value is the extrapolation step of the reference.
     """
-    low, high = (row[level.name][order][name] for order in ("low", "high"))
+    kept = row[level.name]
+    low, high = (kept[order][name] for order in ("low", "high"))
     orders = row["truth"]["orders"]
     true = extrapolated(orders)[name]
     off = abs(high / true - 1)
     return {
         "true error": off,
         "change": abs(low / high - 1),
-        "share": off / level.error(low, high, is_sharp=is_sharp),
+        "share": off / level.error(low, high, is_sharp=is_sharp, is_resolved=kept["is resolved"]),
         "truth's last step": abs(orders[-1][name] / true - 1),
     }
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from cad.analysis.elastic import Response, System, respond
 from cad.analysis.kinds import KINDS, SURFACE, Boundary, Kind
 from cad.analysis.levels import Level, ladder
-from cad.analysis.mesh import make_grid
+from cad.analysis.mesh import Grid, make_grid
 from cad.analysis.modes import torsional_mode
 from cad.analysis.solid import Solid, read_solid
 from cad.analysis.stress import CONVERGED, SMALL, greatest_stress, searched
@@ -100,7 +100,8 @@ def _at_level(
 ) -> dict[str, dict[str, Any]]:
     started = time.perf_counter()
     report(0.1, f"level {level.name}: meshing")
-    grid = make_grid(solid, level.fineness)
+    fineness = level.fineness if SURFACE not in outputs else replace(level.fineness, least=0.0)
+    grid = make_grid(solid, fineness)
     wanted = {name: compute for name, compute in _ELASTIC.items() if name in outputs}
     values: dict[str, list[float]] = {name: [] for name in wanted}
     reasons: dict[str, str] = {}
@@ -125,20 +126,22 @@ def _at_level(
         if name in reasons:
             results[name] = {"value": None, "error": None, **about, "reason": reasons[name]}
         else:
-            results[name] = {**_judged(values[name], level, is_sharp=grid.is_sharp), **about}
+            results[name] = {**_judged(values[name], level, grid), **about}
     if shown:
         results[SURFACE] = {"value": shown, "error": None, **common}
     return results
 
 
-def _judged(values: Sequence[float], level: Level, *, is_sharp: bool) -> dict[str, Any]:
+def _judged(values: Sequence[float], level: Level, grid: Grid) -> dict[str, Any]:
     """Return the value of the higher order with its error.
 
     Return None if the orders differ so much that some elements must be folded.
     """
     low, high = values
-    if min(low, high) > 0 and (likely := level.error(low, high, is_sharp=is_sharp)) < WORST:
-        return {"value": high, "error": likely}
+    if min(low, high) > 0:
+        likely = level.error(low, high, is_sharp=grid.is_sharp, is_resolved=grid.is_resolved)
+        if likely < WORST:
+            return {"value": high, "error": likely}
     reason = f"the elements of level {level.name} are too large for this solid: ask for a finer one"
     return {"value": None, "error": WORST, "reason": reason}
 

@@ -40,7 +40,8 @@ class SolvedThrows:
     high: Sequence[ThrowMatrix]
     elements: int  # of all solids together
     degrees_of_freedom: int
-    is_sharp: bool
+    is_sharp: bool  # any of the solids
+    is_resolved: bool  # all of them
 
 
 def chain_answers(
@@ -70,19 +71,20 @@ def solve(apart: ThrowsApart, level: Level, report: Report) -> SolvedThrows:
     """Return the matrices of each solid, computed on its mesh at one level."""
     orders = (level.order - 1, level.order)
     matrices: tuple[list[ThrowMatrix], list[ThrowMatrix]] = ([], [])
-    elements, freedoms, is_sharp = 0, 0, False
+    elements, freedoms, is_sharp, is_resolved = 0, 0, False, True
     for number, one in enumerate(apart.solids):
         which = f"level {level.name}, throw {number + 1} of {len(apart.solids)}"
         report(number / len(apart.solids), f"{which}: meshing")
         grid = make_grid(read_solid(one.step, one.shaft, mirrors=()), level.fineness)
-        elements, is_sharp = elements + grid.mesh.ne, is_sharp or grid.is_sharp
+        elements += grid.mesh.ne
+        is_sharp, is_resolved = is_sharp or grid.is_sharp, is_resolved and grid.is_resolved
         for place, order in enumerate(orders):
             done = (number + 0.1 + 0.4 * place) / len(apart.solids)
             report(done, f"{which}: solving {grid.mesh.ne} elements of order {order}")
             matrix = matrix_on(grid, order, one.shaft, one.pin)
             matrices[place].append(matrix)
         freedoms += matrices[1][-1].degrees_of_freedom
-    return SolvedThrows(*matrices, elements, freedoms, is_sharp)
+    return SolvedThrows(*matrices, elements, freedoms, is_sharp, is_resolved)
 
 
 def judged(
@@ -106,7 +108,8 @@ def judged(
         pairs = list(zip(np.atleast_1d(low[name]), np.atleast_1d(high[name]), strict=True))
         error, value = WORST, None
         if all(0 < number < np.inf for pair in pairs for number in pair):
-            of_the_mesh = max(level.error(*pair, is_sharp=solved.is_sharp) for pair in pairs)
+            about = {"is_sharp": solved.is_sharp, "is_resolved": solved.is_resolved}
+            of_the_mesh = max(level.error(*pair, **about) for pair in pairs)
             error, value = float(of_the_mesh) + OF_THE_CHAIN[name], high[name]
         answer: dict[str, Any] = {"value": value, "unit": unit, "error": error, **common}
         if error >= WORST:

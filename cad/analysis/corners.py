@@ -31,12 +31,17 @@ class Edges:
 
     ends: Array  # (n, 2, 3) [mm]
     radius: Array  # (n,) [mm], radius of the edge at the end; for a straight edge the size of the solid
+    smallest: float = 0.0  # [mm], size below which no elements are made at them
 
 
-def sharp_inner_edges(shape: Any, scale: float) -> Edges:
-    """Return all sharp inner edges of a shape, found on triangles of this size [mm]."""
+NONE = Edges(np.zeros((0, 2, 3)), np.zeros(0))
+
+
+def sharp_inner_edges(shape: Any, scale: float, smallest: float = 0.0) -> Edges:
+    """Return all sharp inner edges of a shape, found on triangles of this size, none below another [mm]."""
     parameters = MeshingParameters(
         maxh=_SIZE * scale,
+        minh=smallest,
         curvaturesafety=_CURVATURE,
         grading=_GRADING,
         perfstepsend=MeshingStep.MESHSURFACE,
@@ -53,7 +58,8 @@ def sharp_inner_edges(shape: Any, scale: float) -> Edges:
     outward = np.sum((centre[other] - ends.mean(axis=1)) * normal[one], axis=1) > 0
     inner = (face[one] != face[other]) & turned & outward
     faces = np.sort(np.stack([face[one], face[other]], axis=1), axis=1)[inner]
-    return Edges(ends[inner], np.minimum(_radii(faces, vertices[inner], ends[inner]), scale))
+    radius = np.minimum(_radii(faces, vertices[inner], ends[inner]), scale)
+    return Edges(ends[inner], radius, smallest)
 
 
 def along(edges: Edges, share: float) -> Iterator[tuple[tuple[float, float, float], float]]:

@@ -36,13 +36,18 @@ class Level:
     sharp_factor: float  # factor and floor for solids with sharp inner edges
     sharp_floor: float
     typical: float  # typical reported error, relative
+    unresolved: float  # relative error that small fillets add if elements are wider than they curve
 
-    def error(self, low: float, high: float, *, is_sharp: bool = False) -> float:
+    def error(self, low: float, high: float, *, is_sharp: bool = False, is_resolved: bool = True) -> float:
         """Return the estimated relative error of a value, from the value of the next lower order."""
         change = abs(low - high) / high
+        added = 0.0 if is_resolved else self.unresolved
         if is_sharp:
-            return self.sharp_factor * change + self.sharp_floor
-        return self.factor * change + self.floor
+            return self.sharp_factor * change + self.sharp_floor + added
+        return self.factor * change + self.floor + added
+
+
+_CONSTANTS = ("factor", "floor", "sharp_factor", "sharp_floor", "typical", "unresolved")
 
 
 def _read() -> tuple[Level, ...]:
@@ -50,9 +55,9 @@ def _read() -> tuple[Level, ...]:
     return tuple(
         Level(
             row["name"],
-            Fineness(row["size"], row["curvature"], row["turn"], row["sharp"]),
+            Fineness(row["size"], row["curvature"], row["turn"], row["sharp"], row["least"]),
             row["order"],
-            *(row[name] for name in ("factor", "floor", "sharp_factor", "sharp_floor", "typical")),
+            *(row[name] for name in _CONSTANTS),
         )
         for row in rows
     )

@@ -23,8 +23,8 @@ import numpy as np
 from netgen.meshing import MeshingParameters
 from netgen.occ import OCCGeometry
 
-from cad.analysis.corners import Edges, along, sharp_inner_edges
-from cad.analysis.element_count import estimated_elements
+from cad.analysis.corners import NONE, Edges, along, sharp_inner_edges
+from cad.analysis.element_count import element_sizes, estimated_elements
 from cad.analysis.solid import FREE, Solid, planar
 from cad.errors import AnalysisError
 
@@ -35,6 +35,7 @@ ONE_THREAD = {"parallel_meshing": False}
 
 _GRADING = 0.5  # growth rate from one element to the next
 _SAMPLES = 16  # points on an edge, to measure its angle
+_BELOW = 0.9  # share of a size below which another one counts as smaller
 
 
 @dataclass(frozen=True)
@@ -45,6 +46,7 @@ class Fineness:
     curvature: float  # elements per radius of curvature
     turn: float  # [rad], largest angle of one segment of an edge
     sharp: float = 0.15  # size of elements at sharp inner edges, relative to the edge's radius or the solid
+    least: float = 0.0  # smallest elements at fillets and sharp edges, relative to the solid
 
 
 @dataclass(frozen=True)
@@ -63,6 +65,7 @@ class Grid:
     mesh: Any
     solid: Solid
     is_sharp: bool = False  # whether the solid has sharp inner edges
+    is_resolved: bool = True  # whether elements are as small as curvature and sharp edges require
 
 
 def make_grid(
@@ -70,7 +73,8 @@ def make_grid(
 ) -> Grid:
     """Mesh a solid.
 
-    If several meshes have the same fineness, pass the result of `sharp_edges` as `edges`.
+    If several meshes have the same fineness, pass the result of `sharp_edges` as `edges`. Elements at a
+    fillet too small for `least` are wider than it curves: a stiffness permits this, a stress does not.
 
     Raises
     ------
@@ -79,13 +83,18 @@ def make_grid(
     """
     edges = sharp_edges(solid, fineness) if edges is None else edges
     parameters = sizes(solid, fineness, near, edges)
-    return Grid(meshed(solid.shape, parameters, fineness.size * solid.scale), solid, len(edges.ends) > 0)
+    mesh = meshed(solid.shape, parameters, fineness.size * solid.scale)
+    return Grid(mesh, solid, len(edges.ends) > 0, edges.smallest == 0)
 
 
 def sizes(solid: Solid, fineness: Fineness, near: Iterable[Near], edges: Edges) -> MeshingParameters:
     """Return the prescribed sizes of elements: at large, by curvature, near places and along sharp edges."""
     parameters = MeshingParameters(
-        maxh=fineness.size * solid.scale, grading=_GRADING, curvaturesafety=fineness.curvature, **ONE_THREAD
+        maxh=fineness.size * solid.scale,
+        minh=edges.smallest,
+        grading=_GRADING,
+        curvaturesafety=fineness.curvature,
+        **ONE_THREAD,
     )
     for place in near:
         for point in _ball(place):
@@ -124,7 +133,22 @@ def sharp_edges(solid: Solid, fineness: Fineness) -> Edges:
     """
     bound_sizes(solid, fineness)
     with _meshing():
-        return sharp_inner_edges(solid.shape, solid.scale)
+        return sharp_inner_edges(solid.shape, solid.scale, _smallest(solid, fineness))
+
+
+def _smallest(solid: Solid, fineness: Fineness) -> float:
+    """Return the size [mm] below which no elements are made; 0 if none would be.
+
+    Segments of edges longer than that, such as the rim of a drilling, may be smaller than `least`.
+    """
+    least = fineness.least * solid.scale
+    edges = [edge for edge in solid.shape.edges if edge.mass > 0]
+    smallest = min([least, *(_limits(edge, fineness.turn)[1] for edge in edges if edge.mass > least)])
+    if not smallest:
+        return 0.0
+    size_at = element_sizes(solid.shape, sizes(solid, fineness, (), NONE))
+    middles = [edge.Value(sum(edge.parameter_interval) / 2) for edge in edges]
+    return smallest if any(size_at((p.x, p.y, p.z)) < _BELOW * smallest for p in middles) else 0.0
 
 
 @contextmanager

@@ -246,7 +246,7 @@ def test_keys_of_analyses_are_those_of_before(kind, options, identity):
     """As they were made before tables but for the recipe: the kind, and how it was asked."""
     boundary, level, tolerance = identity
     asked = {"boundary": boundary, "kind": kind, "level": level, "tolerance": tolerance}
-    text = json.dumps(["build", asked, f"recipe 7, ngsolve {version('ngsolve')}"])
+    text = json.dumps(["build", asked, f"recipe 8, ngsolve {version('ngsolve')}"])
     assert question(kind, Options(**options)).key("build") == sha256(text.encode()).hexdigest()
 
 

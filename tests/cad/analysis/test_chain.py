@@ -137,7 +137,9 @@ class TestAnswers:
     PLACES = (PlacedThrow(0, 0.0), PlacedThrow(0, pi))
 
     def answers(self, low: ThrowMatrix, boundary: Any = "free_end") -> dict[str, dict[str, Any]]:
-        solved = SolvedThrows([low], [one()], elements=10, degrees_of_freedom=90, is_sharp=False)
+        solved = SolvedThrows(
+            [low], [one()], elements=10, degrees_of_freedom=90, is_sharp=False, is_resolved=True
+        )
         return judged(solved, self.PLACES, boundary, LEVELS[0], seconds=1.0)
 
     def test_values_are_those_of_the_higher_order(self) -> None:

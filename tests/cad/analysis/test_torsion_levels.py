@@ -85,16 +85,16 @@ def test_a_broken_off_run_goes_on_where_it_was(monkeypatch: pytest.MonkeyPatch) 
         asked.append(order)
         return {"stiffness": float(order)}
 
-    mesh = SimpleNamespace(ne=1)
+    grid = SimpleNamespace(mesh=SimpleNamespace(ne=1), is_sharp=False, is_resolved=True)
     monkeypatch.setattr(torsion_levels, "drawn", lambda model, parameters: (b"", Shaft(0.0, 1.0)))
     monkeypatch.setattr(torsion_levels, "by_orders", lambda step, shaft: [{"stiffness": 1.0}])
     monkeypatch.setattr(torsion_levels, "read_solid", lambda step, shaft: None)
-    monkeypatch.setattr(torsion_levels, "make_grid", lambda *_: SimpleNamespace(mesh=mesh, is_sharp=False))
+    monkeypatch.setattr(torsion_levels, "make_grid", lambda *_: grid)
     monkeypatch.setattr(torsion_levels, "outputs_by", values)
     torsion_levels.measure(row, LEVELS)
-    assert sorted(asked) == [2, 2, 3, 3, 4]  # `fine` has the mesh of `default`
+    assert sorted(asked) == [2, 2, 3, 3, 3, 4]
     torsion_levels.measure(row, LEVELS)
-    assert len(asked) == 5
+    assert len(asked) == 6
     row["coarse"]["mesh"] = "another"
     torsion_levels.measure(row, LEVELS)
-    assert asked[5:] == [2, 3]
+    assert asked[6:] == [2, 3]
