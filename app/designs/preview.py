@@ -16,8 +16,8 @@ from app.designs.engine.verdicts import judged
 from app.designs.errors import DesignError
 from app.designs.graph import build_graph, raise_if, read_document, resolved, starts
 from app.designs.parameter_explanation import shown
+from app.designs.result_cells import as_member
 from app.designs.results import Outcome
-from app.designs.roundings import as_member
 from app.designs.schemas.designs import Change, ParameterChange, Preview, RevisionStep, RoundedValue, Status
 from app.designs.variants.checks import checked
 from app.designs.variants.together import Available

@@ -14,8 +14,7 @@ from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import judged
 from app.designs.network import Block
-from app.designs.result_cells import cells
-from app.designs.roundings import ROUNDED, RoundedValue, as_member, rounded
+from app.designs.result_cells import ROUNDED, RoundedValue, as_member, cells, rounded
 from app.designs.variants.names import BASE
 from app.designs.variants.verdict import VARIANT, merged
 from app.designs.worksheet import remember
@@ -58,11 +57,10 @@ def stored(
         "iterations": rounds,
         "analyses": analyses(calculation),
         **rendered(criteria),
+        TABLE: {BASE: cells(calculation)}
+        | {outcome.name: cells(outcome.calculation) for outcome in outcomes if outcome.calculation},
     }
     if outcomes:
-        results[TABLE] = {BASE: cells(calculation)} | {
-            outcome.name: cells(outcome.calculation) for outcome in outcomes if outcome.calculation
-        }
         base = _variant({}, own, single_outputs(calculation), {}, None, rounded(calculation))
         results[VARIANTS] = {BASE: base, **{outcome.name: _outcome(outcome) for outcome in outcomes}}
         results |= _governing(criteria, outcomes, results["steps"])
