@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
+from math import dist
 
 import numpy as np
 
@@ -16,6 +17,7 @@ _STRIPS = 40  # of a view, in which words keep off its lines
 _APART = 0.8  # between two texts, and between a text and a line [mm on paper]
 _BESIDE, _PARALLEL = 1.3, 0.06
 """A leader runs along a line that is so near [mm on paper], and leads away by so little of its length."""
+_LONG = 5.0  # a piece of an outline along which a leader may run [mm on paper]
 _LIKE = 3  # crossings: to run along a line is as bad
 
 
@@ -47,7 +49,7 @@ class Room:
         self.leaders: list[list[Point]] = []
         self._boxes, self._words, self._lines = _Rows(), _Rows(), _Rows()
         self._drawn = _Rows()  # lines of dimensions, leaders and frames
-        self._outlines = _Rows()  # of views
+        self._outlines, self._long = _Rows(), _Rows()  # of views: all pieces, and the long ones
 
     @property
     def words(self) -> list[Rectangle]:
@@ -101,6 +103,9 @@ class Room:
     def add_outline(self, points: Sequence[Point]) -> None:
         """Keep a line of a view, which words within that view avoid."""
         self._outlines.add_line(points)
+        for one, other in pairwise(points):
+            if dist(one, other) > _LONG:
+                self._long.add_line([one, other])
 
     def is_free_within(self, box: Rectangle) -> bool:
         """Return whether a rectangle within a view is clear of its lines, of words and of other lines."""
@@ -153,8 +158,9 @@ class Room:
 
         One that it runs along counts as several.
         """
-        piece, lines = np.array([*one, *other]), (self._outlines.array, self._lines.array)
-        return sum(int(_meet(piece, some).sum() + _LIKE * _along(piece, some).any()) for some in lines)
+        piece = np.array([*one, *other])
+        met = sum(int(_meet(piece, some.array).sum()) for some in (self._outlines, self._lines))
+        return met + _LIKE * any(_along(piece, some.array).any() for some in (self._long, self._lines))
 
     def first(self, boxes: Iterable[tuple[Rectangle, Point]]) -> Point | None:
         """Occupy the first free rectangle, and return its point."""
