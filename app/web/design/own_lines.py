@@ -30,7 +30,12 @@ def own_lines(design: Design, revision: Revision, refusal: Refusal) -> OwnLines:
     """Return the lines of a design for its page."""
     faults = [detail for name, detail in refusal.faults.items() if name.partition(".")[0] == WORKSHEET]
     text = refusal.typed.get(WORKSHEET, design.worksheet)
-    return OwnLines(text, faults, list(_rows(revision)), plots_of(revision))
+    return OwnLines(text, faults, rows_of(revision), plots_of(revision))
+
+
+def rows_of(revision: Revision) -> list[Row]:
+    """Return the lines of a revision, typeset with their values; empty if it has none."""
+    return list(_rows(revision))
 
 
 def _rows(revision: Revision) -> Iterator[Row]:

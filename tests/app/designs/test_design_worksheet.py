@@ -260,6 +260,8 @@ def test_copies_comparisons_and_restored_revisions_have_the_lines(http):
     assert {lines["old"], lines["new"]} == {TEXT, f'{TEXT}k [1] = 2 "two"'}
     restored = http.post(f"{path}/revisions/1/restore", json={}, headers={"Prefer": "wait=60"}).json()
     assert restored["worksheet"] == TEXT
+    page = http.get(f"/designs/{design['id']}/revisions/2?with=1").text
+    assert all(part in page for part in ("worksheet.two", "film ratio", "line-value"))
     copy = http.post(f"{path}/copy", json={}, headers={"Prefer": "wait=60"}).json()
     assert copy["worksheet"] == TEXT
     assert changed["revision"] == 2
