@@ -2,13 +2,15 @@
 
     python -m benchmarks.small_fillets [COUNT] [SEED]
 
-The journals have 40 to 100 mm. The fillets of three throws of four are 0.015 to 0.027 of that, the others
-0.008 to 0.015, at least 0.2 mm. Half of the throws are twisted, the others bent. The full model is the mesh
+The journals have 40 to 100 mm. Of the first 20 throws, the fillets of three of four are 0.015 to 0.027 of
+that, the others 0.008 to 0.015; of the further ones, three of four 0.008 to 0.015, the others 0.004 to 0.008.
+All have at least 0.2 mm. Half of the throws are twisted, the others bent. The full model is the mesh
 of level `default` with all fillets resolved, in elements of third order. Throws are skipped if their full
 mesh has too many elements, which are counted before meshing. `share` is the difference between a level and
 the full model over the stated error of the level, which must be below 1. Every result is stored in
 benchmarks/results/small_fillets.json at once, so an interrupted run continues; a throw takes about 12 s of
-processor time. With COUNT 0 the stored results are judged by the present levels.
+processor time. The reference throw with a fillet of 0.3 mm follows, bent and twisted. With COUNT 0 the stored
+results are judged by the present levels.
 """
 
 from __future__ import annotations
@@ -22,6 +24,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.torsion import THROW
 from benchmarks.torsion_levels import possible, random_throws, shaft_of
 from cad.analysis.corners import NONE
 from cad.analysis.elastic import System, respond
@@ -34,10 +37,13 @@ from cad.models.crank_throw_v1 import CrankThrow
 from cad.shaft import STEEL_MATERIAL, Shaft
 
 RESULTS = Path("benchmarks/results/small_fillets.json")
-COUNT, SEED = 52, 3701
+COUNT, SEED = 50, 3701
 SMALLEST = 0.2e-3  # [m]
+FIRST = 20
 FILLETS = (*3 * [(0.015, 0.027, 6500)], (0.008, 0.015, 10_000))
-"""Range of the fillets relative to the journal, and most elements of the full mesh; used in turn."""
+SMALLER = (*3 * [(0.008, 0.015, 10_000)], (0.004, 0.008, 20_000))
+"""Range of the fillets relative to the journal, and most elements of the full mesh; used in turn, the second
+after the first throws."""
 CHEAP = LEVELS[:2]
 FULL, ORDER = replace(LEVELS[1].fineness, least=0.0), 3
 
@@ -48,7 +54,7 @@ Throw = tuple[bytes, Shaft]  # STEP file, and the positions at which it is held 
 def small_filleted(seed: int, number: int) -> tuple[Row, Throw]:
     """Return parameters [SI] and file of a random throw with small fillets whose full mesh is affordable."""
     rng = np.random.default_rng([seed, number])
-    low, high, most = FILLETS[number % len(FILLETS)]
+    low, high, most = (FILLETS if number < FIRST else SMALLER)[number % len(FILLETS)]
     for drawn in random_throws(1000, seed + 1000 * number):
         parameters = {**drawn, "fillet": drawn["journal_diameter"] * rng.uniform(low, high)}
         if parameters["fillet"] > SMALLEST and possible(CrankThrow, parameters):
@@ -85,7 +91,11 @@ def solved(step: bytes, shaft: Shaft, load: Kind, fineness: Fineness, orders: tu
 def measured(seed: int, number: int) -> Row:
     """Return the stiffness of a throw by the levels and by the full model."""
     parameters, throw = small_filleted(seed, number)
-    load = LOADS[number // len(FILLETS) % 2]
+    return compared(parameters, throw, LOADS[number // len(FILLETS) % 2])
+
+
+def compared(parameters: Row, throw: Throw, load: Kind) -> Row:
+    """Return the stiffness of one throw by the levels and by the full model."""
     levels = {level.name: solved(*throw, load, level.fineness, (2, 3)) for level in CHEAP}
     full = solved(*throw, load, FULL, (ORDER,))
     return {"load": load, "parameters": parameters, **levels, "full": full}
@@ -126,18 +136,23 @@ def ratio(rows: list[Row], level: Level, cost: str) -> float:
 
 def main(count: int, seed: int) -> None:
     """Measure what is not stored yet, print and store it."""
-    rows: list[Row] = json.loads(RESULTS.read_text())["rows"] if RESULTS.exists() else []
+    stored: Row = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
+    rows, reference = stored.get("rows", []), stored.get("reference", [])
     for number in range(len(rows), count):
         rows.append(measured(seed, number))
         print(number, json.dumps({level.name: judged(rows[-1], level) for level in CHEAP}), flush=True)
-        keep(rows, seed)
-    keep(rows, seed)
-    print(json.dumps(summary(rows), indent=1))
+        keep(rows, reference, seed)
+    for load in LOADS[len(reference) :] if count else ():
+        parameters = {**THROW, "fillet": 0.3e-3}
+        reference.append(compared(parameters, shaft_of(parameters), load))
+    keep(rows, reference, seed)
+    print(json.dumps({"throws": summary(rows), "reference": summary(reference)}, indent=1))
 
 
-def keep(rows: list[Row], seed: int) -> None:
+def keep(rows: list[Row], reference: list[Row], seed: int) -> None:
     """Store the results so far."""
-    RESULTS.write_text(json.dumps({"seed": seed, "summary": summary(rows), "rows": rows}, indent=1) + "\n")
+    found = {"seed": seed, "summary": summary(rows), "reference summary": summary(reference)}
+    RESULTS.write_text(json.dumps({**found, "rows": rows, "reference": reference}, indent=1) + "\n")
 
 
 if __name__ == "__main__":
