@@ -106,7 +106,7 @@ class Judgement:
     @property
     def has_fixed_limit(self) -> bool:
         """Return whether the limit is a literal number in the criterion."""
-        return _is_number(self.sides[1])
+        return _parts_of(self.require).has_fixed_limit
 
     @property
     def misses(self) -> bool:
@@ -154,7 +154,7 @@ class _Parts(NamedTuple):
     """A required comparison, split into its parts.
 
     `sides` are value and limit as text; `written` is the whole comparison with labels for names; the words of
-    each side precede its number.
+    each side precede its number. The limit is fixed if it is a literal number.
     """
 
     sign: str
@@ -162,6 +162,7 @@ class _Parts(NamedTuple):
     value_words: str
     limit_words: str
     written: str
+    has_fixed_limit: bool
 
 
 @lru_cache(maxsize=1024)  # bounded, because worksheets and designs keep adding criteria
@@ -170,7 +171,7 @@ def _parts_of(require: str) -> _Parts:
     left, _, right = require.partition(sign)
     value, limit = left.strip(), right.strip()
     written = f"{_name(value)} {sign} {_name(limit)}"
-    return _Parts(sign, (value, limit), _in_words(value), _in_words(limit), written)
+    return _Parts(sign, (value, limit), _in_words(value), _in_words(limit), written, _is_number(limit))
 
 
 def _is_number(side: str) -> bool:
