@@ -184,7 +184,7 @@ def spared_by_collections() -> Iterator[None]:
 
     With half a million permanent objects, each full collection takes a tenth of a second. Nearly all objects
     of a request are freed without a collection; with Python's own threshold, collections would take a
-    twentieth of the time of a save.
+    thirtieth of the time of a save.
     """
     threshold = gc.get_threshold()
     gc.set_threshold(NEW_OBJECTS, *threshold[1:])

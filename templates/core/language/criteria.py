@@ -116,11 +116,12 @@ def judged_alone(evaluated: EvaluatedValues, criterion: Criterion) -> Judgement:
     """Return the judgement of one criterion whose outputs were evaluated."""
     estimates, absent = estimates_of(evaluated, criterion)
     shown = evaluated.shown_in.get(criterion.subject or "")
+    unit_name = shown.text if shown else None
     template = evaluated.template
     along = None if template._curves.isdisjoint(criterion.names) else along_of(template, criterion.names)
     noted = notes(evaluated, criterion)
     instead = _instead(evaluated, criterion) if criterion.absent else None
-    return judge(criterion, estimates, absent, along, shown and shown.text, noted=noted, instead=instead)
+    return judge(criterion, estimates, absent, along, unit_name, noted=noted, instead=instead)
 
 
 def notes(evaluated: EvaluatedValues, criterion: Criterion) -> dict[str, str | None]:
