@@ -39,6 +39,7 @@ from app.client.design_operations import restore as restore
 from app.client.design_operations import revision as revision
 from app.client.design_operations import revisions as revisions
 from app.client.design_operations import tags as tags
+from app.client.design_operations import undelete as undelete
 from app.client.exchange import (
     BASE,
     Exchange,

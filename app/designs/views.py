@@ -95,6 +95,7 @@ def listed(
         tags=tags,
         archived=row.archived is not None,
         **({"released": released} if released is not None else {}),
+        **({"deleted": row.deleted} if row.deleted is not None else {}),
     )
 
 

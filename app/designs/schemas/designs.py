@@ -105,6 +105,7 @@ class DesignSummary(Answer):
     tags: list[str] = Field([], description="in alphabetical order")
     archived: bool = Field(False, description="if true, lists omit it unless they filter by `archived`")
     released: int | None = Field(None, description="the newest released revision; absent if there is none")
+    deleted: str | None = Field(None, description="time of deletion; absent if it is not deleted")
 
 
 class DesignList(Page[DesignSummary]):

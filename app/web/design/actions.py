@@ -170,10 +170,18 @@ async def copy(id: Id, services: ThePageServices) -> Response:
 
 
 @router.post("/designs/{id}/delete")
-async def delete(id: Id, services: ThePageServices) -> Response:
-    """Remove a design from the lists."""
-    await services.run(services.designs.delete, id)
+async def delete(id: Id, request: Request, services: ThePageServices) -> Response:
+    """Remove a design from the lists, if it is as the user saw it."""
+    seen = (await fields(request)).get("revision", "")
+    await services.run(services.designs.delete, id, f'"{seen}"')
     return go("/#designs")
+
+
+@router.post("/designs/{id}/undelete")
+async def undelete(id: Id, services: ThePageServices) -> Response:
+    """Return a deleted design to the lists, and show it."""
+    await services.run(services.designs.undelete, id)
+    return go(f"/designs/{id}")
 
 
 @router.post("/designs/{id}/revisions/{number}/restore")

@@ -145,7 +145,7 @@ class TestValues:
 
     def test_a_temperature_has_a_difference_in_kelvin_and_no_relative_change(self):
         (item,) = self.differ({"value": 80, "unit": "degC"}, {"value": 90, "unit": "degC"})
-        assert item["difference"] == {"value": pytest.approx(10), "unit": "K"}
+        assert item["difference"] == {"value": pytest.approx(10), "unit": "delta_degC"}
         assert "change" not in item
 
     def test_from_zero_there_is_no_relative_change(self):
