@@ -138,7 +138,10 @@ def test_the_history_leads_to_any_two_revisions(watched, http, paper):
     expect(speed).to_contain_text("5000")
     expect(speed).to_contain_text("7000")
     expect(speed).to_contain_text("+40 %")
-    expect(page.locator('[data-compared="film.minimum_film_thickness"]')).to_be_visible()
+    films = page.get_by_role("region", name="Results of both revisions")
+    expect(films.get_by_role("columnheader", name="Minimum film thickness [µm]")).to_be_visible()
+    expect(films.locator("tbody tr")).to_have_count(2)
+    expect(page.locator('[data-compared="film.minimum_film_thickness"]')).to_have_count(0)
     copy = http.post(f"{API}{paper}/copy", json={"name": "the other one"}).json()
     other = http.patch(
         f"{API}/designs/{copy['id']}",
