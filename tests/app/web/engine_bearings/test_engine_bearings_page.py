@@ -97,6 +97,16 @@ def test_the_form_checks_entries_while_they_are_typed(watched):
     assert watched.faults() == []
 
 
+def test_bare_numbers_follow_the_switch_of_units(http):
+    typed = {"layout": "in_line_4", "bore": "3.4", "piston_mass": "1"}
+    http.cookies.set("units", "us")
+    answer = send(http, typed, wanted="check")
+    assert "= 2.21 in<" in answer.text  # 0.65 * 3.4 inch
+    assert 'placeholder="3.39 inch"' in answer.text
+    http.cookies.set("units", "si")
+    assert "= 2.21 mm<" in send(http, typed, wanted="check").text
+
+
 @NEEDS_CHROMIUM
 @pytest.mark.slow
 @pytest.mark.parametrize("scheme", ["light", "dark"])
