@@ -114,12 +114,22 @@ install() {
 
 # Chromium and pdftotext, for the tests of the pages; without them these skip, and say so. The whole Chromium
 # draws a window that nobody sees, and takes twice the processor time: it is used where the other is not.
+# nginx and Caddy, for the tests of the shipped files of proxies.
 install_browser() {
-    command -v chromium-headless-shell >/dev/null && command -v pdftotext >/dev/null && return
-    local as_root=""
+    install_packages chromium-headless-shell chromium-headless-shell
+    install_packages pdftotext poppler-utils
+    install_packages nginx nginx-light
+    install_packages caddy caddy
+}
+
+# Debian packages, unless a command is there already: COMMAND PACKAGE…
+install_packages() {
+    local command=$1 as_root=""
+    shift
+    command -v "$command" >/dev/null && return
     [ "$(id -u)" -eq 0 ] || as_root="sudo -n"
-    { $as_root apt-get update -q && $as_root apt-get install -q -y --no-install-recommends chromium-headless-shell poppler-utils; } \
-        >/dev/null 2>&1 || echo "apt-get cannot install chromium-headless-shell: without chromium the tests of the pages will skip"
+    { $as_root apt-get update -q && $as_root apt-get install -q -y --no-install-recommends "$@"; } >/dev/null 2>&1 ||
+        echo "apt-get cannot install $*: the tests that need $command will skip"
 }
 
 # PostgreSQL, for the tests of a team; without it these skip, and say so. Its own service is not started.

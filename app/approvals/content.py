@@ -13,7 +13,7 @@ from app.designs.result_records import results_of
 from app.schemas.approval_steps import ORDER
 from app.schemas.criteria import Criterion
 from app.solids import rows
-from app.storage.tables import ApprovalRow, RevisionRow, canonical_json
+from app.storage.tables import ApprovalRow, PrintedReportRow, RevisionRow, canonical_json
 
 STEP = "step"
 
@@ -81,6 +81,13 @@ def steps_taken(session: Session, row: RevisionRow) -> list[ApprovalRow]:
     of_revision = ApprovalRow.design_id == row.design_id, ApprovalRow.revision == row.number
     rows = {row.step: row for row in session.scalars(select(ApprovalRow).where(*of_revision))}
     return [rows[step] for step in ORDER if step in rows]
+
+
+def prints(session: Session, row: RevisionRow) -> list[PrintedReportRow]:
+    """Return the reports that were printed of a revision since its first signature, oldest first."""
+    of_revision = PrintedReportRow.design_id == row.design_id, PrintedReportRow.revision == row.number
+    query = select(PrintedReportRow).where(*of_revision)
+    return list(session.scalars(query.order_by(PrintedReportRow.at, PrintedReportRow.sha256)))
 
 
 def shown(row: ApprovalRow) -> Approval:

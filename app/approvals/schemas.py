@@ -7,6 +7,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, model_validator
 
+from app.identity.schemas.principals import Author
 from app.schemas.answers import Answer, Page
 from app.schemas.approval_steps import ApprovalState, Step
 from app.schemas.bounds import Bounded
@@ -45,7 +46,8 @@ class SignedContent(Answer):
     """The signed content; the `digest` of its step is the SHA-256 of this object as canonical JSON.
 
     In canonical JSON the names are sorted, there are no blanks, letters beyond ASCII are not escaped, and the
-    encoding is UTF-8. `reason`, `unconfirmed` and `acknowledged` are omitted if they are empty.
+    encoding is UTF-8. `reason`, `unconfirmed`, `acknowledged`, `account_by` and
+    `prints` are omitted if they are empty.
     """
 
     design: str
@@ -62,6 +64,14 @@ class SignedContent(Answer):
     reason: str | None = Field(None, description="reason for a withdrawal")
     unconfirmed: list[str] = Field([], description="criteria that are not confirmed, each in a sentence")
     acknowledged: str | None = Field(None, description="why it was signed nevertheless")
+    account_by: Author | None = Field(
+        None, description="the administrator who created the principal; absent if the operator did"
+    )
+    prints: Literal["recorded"] | None = Field(
+        None,
+        description="`recorded` if the service records every report that it prints of the revision from this "
+        "step on; an earlier version of the program did not",
+    )
 
 
 class Approval(Answer):
@@ -83,6 +93,15 @@ class Present(Answer):
     files: Files
 
 
+class PrintedReport(Answer):
+    """A report that the service printed of a signed revision."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    sha256: str = Field(description="SHA-256 of the file (PDF)")
+    at: str = Field(description="time of its first print")
+
+
 class Approvals(Answer):
     """The approval of a revision: calculated by its author, checked and released by two others."""
 
@@ -99,6 +118,7 @@ class Approvals(Answer):
     obstacle: str | None = Field(description="why you cannot take the next step now; null if you can")
     to_sign: str = Field(description="digest of the content to sign: send it as If-Match; also the ETag")
     present: Present
+    prints: list[PrintedReport] = Field(description="reports printed since the first signature, oldest first")
     supersedes: int | None = Field(description="the released revision that this one replaces")
     superseded_by: int | None = Field(description="the newest released revision, if it is a later one")
 

@@ -9,6 +9,7 @@ from app.approvals.content import (
     criteria_of,
     digest,
     present,
+    prints,
     require_files,
     shown,
     steps_taken,
@@ -23,10 +24,17 @@ from app.approvals.rules import (
     state_of,
     unconfirmed,
 )
-from app.approvals.schemas import ApprovalIn, Approvals, Present, ReleasedRevision, SignedContent
+from app.approvals.schemas import (
+    ApprovalIn,
+    Approvals,
+    Present,
+    PrintedReport,
+    ReleasedRevision,
+    SignedContent,
+)
 from app.designs import repository
 from app.designs.releases import NEWEST_RELEASED, newest_released
-from app.identity.audit import record
+from app.identity import audit
 from app.identity.errors import RoleNeeded
 from app.identity.principal import acting
 from app.schemas.approval_steps import Step
@@ -141,6 +149,8 @@ def _take(session: Session, row: RevisionRow, body: ApprovalIn, expected: str) -
         results=held.results,
         files=files,
         previous=previous,
+        prints="recorded",
+        **({"account_by": creator} if (creator := audit.creator(session, who.id)) else {}),
         **({"reason": body.reason} if body.reason else {}),
         **statement,
     )
@@ -163,7 +173,7 @@ def _write(session: Session, signed: SignedContent) -> None:
     )
     session.flush()
     place = f"designs/{signed.design}/revisions/{signed.revision}"
-    record(session, f"revision.{_VERBS[signed.step]}", place, digest(content), signed.at)
+    audit.record(session, f"revision.{_VERBS[signed.step]}", place, digest(content), signed.at)
 
 
 _VERBS: dict[Step, str] = {
@@ -188,6 +198,7 @@ def _shown(session: Session, row: RevisionRow) -> Approvals:
         obstacle=_obstacle(row, taken, held),
         to_sign=to_sign(row, held, taken[-1].digest if taken else None),
         present=held,
+        prints=[PrintedReport.model_validate(one) for one in prints(session, row)],
         supersedes=row.supersedes,
         superseded_by=newest if newest is not None and newest > row.number else None,
     )

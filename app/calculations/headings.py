@@ -27,6 +27,8 @@ _USUAL = {name.lower(): name for name in "mbar bar mmHg inHg hPa kPa psi V mV N 
 _CALIBRATED = re.compile(
     r"(?:V[ ,;@x*·=]*)?(?P<size>[0-9]{1,6}(?:[.,][0-9]{1,6})?) ?(?P<unit>[A-Za-z]{1,6})/V"
 )
+_ANGLE_UNIT = re.compile(r"°|º|deg(?:ree)?s?|grad|rad", re.IGNORECASE)
+_PRESSURE_UNIT = re.compile(r"mbar|bar|mmHg|inHg|hPa|kPa|MPa|Pa|psi", re.IGNORECASE)
 LONGEST_UNIT = 60
 
 
@@ -77,7 +79,7 @@ def heading_unit(text: str) -> HeadingUnit:
     try:
         return HeadingUnit(unit(plain).text)
     except FaultyText:
-        if plain.lower() in _USUAL and plain.lower() in ("bar", "mbar", "psi"):
+        if plain.lower() in _USUAL and plain.lower() in ("bar", "mbar", "psi", "kpa", "hpa"):
             return HeadingUnit(_USUAL[plain.lower()])
         raise
 
@@ -89,6 +91,19 @@ def is_unit(text: str) -> bool:
     except FaultyText:
         return False
     return True
+
+
+def quantity_of(text: str) -> str:
+    """Return the quantity of a heading that is only a unit, such as `pressure` for `bar(a)`; empty if none.
+
+    Only units that are no usual symbol of a quantity count: `V` may be a volume, `s` a stroke.
+    """
+    plain = text.strip()
+    if len(plain) > LONGEST_UNIT:
+        return ""
+    if _CRANK.fullmatch(plain) or _ANGLE_UNIT.fullmatch(plain):
+        return "crank angle"
+    return "pressure" if _PRESSURE.fullmatch(plain) or _PRESSURE_UNIT.fullmatch(plain) else ""
 
 
 def parted(cell: str) -> tuple[str, str]:

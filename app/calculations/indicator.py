@@ -57,6 +57,8 @@ def as_cycle(table: Table) -> Table:
         columns, more = _over_angles(columns, time, pulse, pressure)
     else:
         columns, more = _mean(columns, axis, pressure)
+        if not more:
+            columns, more = _ascending(columns, axis)
     volts = [f"{column.name} in volts: its heading may contain a calibration, such as `pressure [20 bar/V]`"
              for column in columns if column.unit and _measures(column, "V")]  # fmt: skip
     return Table(columns, [*table.assumed, *assumed, *more, *volts])
@@ -127,7 +129,7 @@ def _mean(
         return columns, []  # no angles that grow from cycle to cycle
     if len(restarts):
         parts = [slice(a, b) for a, b in _pairs([0, *restarts.tolist(), len(angles)])]
-        length = _length(max(float(np.ptp(angles[part])) for part in parts), step)
+        length = _length(float(np.ptp(angles)), step)  # of all: a part may be half a cycle
         starts: Array = np.zeros(len(parts))
     else:
         length = _repeated(angles, np.array(pressure.values), step)
@@ -151,6 +153,16 @@ def _mean(
         for column in columns
     ]
     return averaged, _counted(len(whole), len(parts) - len(whole), length)
+
+
+def _ascending(columns: list[TableColumn], axis: TableColumn) -> tuple[list[TableColumn], list[str]]:
+    """Return the rows of one cycle by ascending crank angle; repeated angles are left to the template."""
+    angles = np.array(axis.values)
+    if np.all(np.diff(angles) > 0) or len(np.unique(angles)) < len(angles):
+        return columns, []
+    order = np.argsort(angles)
+    ordered = [replace(one, values=tuple(np.array(one.values)[order].tolist())) for one in columns]
+    return ordered, ["rows put in order of the crank angle"]
 
 
 def _pairs(places: Sequence[int]) -> Iterator[tuple[int, int]]:

@@ -16,7 +16,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import islice
 
-from app.calculations.headings import HeadingUnit, heading_unit, is_unit, parted
+from app.calculations.headings import HeadingUnit, heading_unit, is_unit, parted, quantity_of
 from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt
 
 MOST_CHARACTERS, MOST_ROWS, MOST_COLUMNS, MOST_FAULTS = 1_000_000, 10_000, 32, 20
@@ -306,7 +306,7 @@ def _headings(lines: Sequence[_Line], faults: _Faults) -> tuple[list[str], list[
     first = lines[0]
     if not _is_words(first):
         return [f"column {n}" for n in range(1, len(first.cells) + 1)], [_NO_UNIT] * len(first.cells), lines
-    split = [_heading(cell, place) for place, cell in enumerate(first.cells, start=1)]
+    split = _units_alone(first) or [_heading(cell, place) for place, cell in enumerate(first.cells, start=1)]
     names = [name for name, _ in split]
     units = _read_units(first, names, [text for _, text in split], faults)
     if len(lines) < 2 or not _is_words(lines[1]) or len(lines[1].cells) != len(names):
@@ -316,6 +316,17 @@ def _headings(lines: Sequence[_Line], faults: _Faults) -> tuple[list[str], list[
         return names, units, lines[1:]  # the headings have their units: these words are not numbers
     below = _read_units(lines[1], names, texts, faults)
     return names, _agreed(lines[1], names, units, below, faults), lines[2:]
+
+
+def _units_alone(line: _Line) -> list[tuple[str, str]]:
+    """Return names and units if the headings are only units of crank angle and pressure; otherwise empty."""
+    texts = [_bare(cell) for cell in line.cells]
+    names = [quantity_of(text) for text in texts]
+    if not all(names) or len(set(names)) < 2:
+        return []
+    numbered = [f"{name} {names[: n + 1].count(name)}" if names.count(name) > 1 else name
+                for n, name in enumerate(names)]  # fmt: skip
+    return list(zip(numbered, texts, strict=True))
 
 
 def _is_words(line: _Line) -> bool:

@@ -38,6 +38,7 @@ HEALTH = frozenset({"/healthz", "/readyz"})
 """Paths that answer everyone, whether or not the database can be reached."""
 STILL = "crankwright.still"
 """Key of an ASGI scope: a function that checks whether the key or session still has the same roles."""
+_SCHEME = b"bearer"
 _BEARER = re.compile(rb"bearer +([!-~]{1,200})", re.IGNORECASE)
 _SIGN_IN_COOKIE = re.compile(rb"(?:^|;) *" + SIGN_IN.encode() + rb"=([A-Za-z0-9_-]{43})(?:;|$)")
 _MOST_COOKIES = 8192  # bytes of the header that are searched
@@ -87,10 +88,13 @@ async def _is_still(door: Door, scope: Scope, who: Principal) -> bool:
 
 
 async def _guest(door: Door, scope: Scope) -> Guest | None:
-    """Return the guest whom the key or session of a request identifies."""
+    """Return the guest whom the key or session of a request identifies.
+
+    Only the scheme Bearer carries a key of the service; others, such as Basic, are for a proxy before it.
+    """
     cookies = b""
     for name, value in scope["headers"]:
-        if name == b"authorization":
+        if name == b"authorization" and value[: len(_SCHEME)].lower() == _SCHEME:
             sent = _BEARER.fullmatch(value)
             return await door.by_key(sent[1].decode()) if sent else None
         if name == b"cookie":

@@ -58,6 +58,7 @@ def configuration(app: FastAPI, settings: Settings, port: int | None = None) -> 
         port=settings.port if port is None else port,
         http=protocol(limits, RequestLog(_busy)),
         ws="none",
+        forwarded_allow_ips=list(settings.trusted_proxies),
         timeout_keep_alive=settings.keep_alive_seconds,
         timeout_graceful_shutdown=settings.drain_seconds - settings.stop_seconds,  # type: ignore[arg-type]  # fractions of a second work too
         log_config=None,

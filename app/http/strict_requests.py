@@ -24,6 +24,7 @@ from starlette.types import Receive, Scope, Send
 
 from app.http.openapi import operation_id
 from app.http.pace import Pace
+from app.observation.secrets import MARK, holds_key, without_keys
 from app.plain import Json
 from app.workers.pieces import PIECE
 from templates.core.errors import Fault, InvalidInputs, plain
@@ -187,7 +188,7 @@ class StrictRoute(APIRoute):
         HttpError
             If the precondition is missing, or the body has a wrong type, is too large or too complex.
         HTTPException, InvalidInputs
-            If a text contains U+0000.
+            If a text contains U+0000 or a key of the service.
         """
         await _refreshed(request)
         refuse_nul_in_address(request)
@@ -198,8 +199,8 @@ class StrictRoute(APIRoute):
             check_type(request, PATCH_TYPES if is_patch else JSON_TYPES)
             # Read the body here, because FastAPI answers any error raised while it reads with 400.
             await self._admit(request)
-            if await _check_intricacy(request) and has_nul(await request.body()):
-                refuse_nul_in(await _read(request))
+            if await _check_intricacy(request) and is_forbidden(await request.body()):
+                refuse_forbidden_in(await _read(request))
 
     async def _admit(self, request: StrictRequest) -> None:
         try:
@@ -375,28 +376,28 @@ async def _read(request: StrictRequest) -> object:
 
 
 async def _check_intricacy(request: StrictRequest) -> bool:
-    """Check that the body has not too many nested or named parts; return whether a text may contain U+0000.
+    """Check that the body has not too many nested or named parts; return whether a text may be forbidden.
 
     A large body is checked in pieces, so that other requests run in between.
     """
     brackets = quotes = 0
-    is_nul_possible, end = False, b""
+    is_suspect, end = False, b""
     parts = await request.parts()
     if len(parts) == 1 and len(parts[0]) <= MOST_BRACKETS:  # too short to have too many brackets
-        return may_have_nul(parts[0])
+        return may_be_forbidden(parts[0])
     for number, part in enumerate(parts):
         if number:
             await request.pace.step()
         brackets += part.count(b"[") + part.count(b"{")
         quotes += part.count(b'"')
-        is_nul_possible = is_nul_possible or may_have_nul(part) or may_have_nul(end + part[:5])
+        is_suspect = is_suspect or may_be_forbidden(part) or may_be_forbidden(end + part[:5])
         end = part[-5:]
     if brackets > MOST_BRACKETS or quotes > MOST_QUOTES:
         message = f"a body may open {MOST_BRACKETS} brackets and have {MOST_QUOTES // 2} texts and names"
         raise TooIntricate(
             f'{message}; send numbers as one list with one unit: {{"value": [1, 2], "unit": "mm"}}'
         )
-    return is_nul_possible
+    return is_suspect
 
 
 async def fingerprint(request: Request) -> str:
@@ -410,9 +411,10 @@ async def fingerprint(request: Request) -> str:
 NUL = "\0"
 """U+0000, which PostgreSQL cannot store. For both kinds of database, the service refuses it while reading
 a request and names the field that contains it."""
-MOST_NUL_PLACES = 20
+MOST_PLACES = 20
 _NUL_DETAIL = "no text may contain the character U+0000 (NUL); remove it: {}"
-_ESCAPED_NUL = b"\\u0000"
+_KEY_DETAIL = "no text may contain a key of the service: others would read it; remove it, and revoke the key"
+_ESCAPED_NUL, _KEY_MARK = b"\\u0000", MARK.encode()
 _JSON_NUL = re.compile(rb"(?<!\\)(?:\\\\)*\\u0000")
 """U+0000 in JSON; an escaped backslash may precede `u0000`."""
 
@@ -432,39 +434,41 @@ def refuse_nul_in_address(request: Request) -> None:
     if b"%00" in request.scope["query_string"]:
         given = request.query_params.multi_items()
         having = [(name, value) for name, value in given if NUL in name or NUL in value]
-        _refuse_nul({name: value if NUL in value else name for name, value in having})
+        _refuse({name: value if NUL in value else name for name, value in having})
 
 
-def may_have_nul(part: bytes) -> bool:
-    """Return whether a piece of JSON may contain a text with U+0000."""
-    return _ESCAPED_NUL in part
+def may_be_forbidden(part: bytes) -> bool:
+    """Return whether a piece of JSON may contain a text with U+0000 or with a key."""
+    return _ESCAPED_NUL in part or _KEY_MARK in part
 
 
-def has_nul(body: bytes) -> bool:
-    """Return whether a text in JSON contains U+0000, in linear time."""
-    return _JSON_NUL.search(body) is not None
+def is_forbidden(body: bytes) -> bool:
+    """Return whether a text in JSON contains U+0000 or a key of the service, in linear time."""
+    return _JSON_NUL.search(body) is not None or (_KEY_MARK in body and holds_key(body.decode("latin-1")))
 
 
-def refuse_nul_in(value: object) -> None:
-    """Refuse JSON that contains U+0000 in a text or a name.
+def refuse_forbidden_in(value: object) -> None:
+    """Refuse JSON that contains U+0000 or a key of the service in a text or a name.
 
     Raises
     ------
     InvalidInputs
-        If fields contain it; the error names them.
+        If fields contain them; the error names the fields.
     """
-    _refuse_nul(dict(_nul_places(value)))
+    _refuse(dict(_forbidden_places(value)))
 
 
-def _refuse_nul(texts: Mapping[str, str]) -> None:
-    """Raise InvalidInputs if there are fields with U+0000; each is named with its text or name."""
+def _refuse(texts: Mapping[str, str]) -> None:
+    """Raise InvalidInputs if there are forbidden texts; each is named with its text or name."""
     if texts:
-        raise InvalidInputs(
-            [
-                Fault(plain(name.replace(NUL, "\\0")), "nul", _NUL_DETAIL.format(_nul_position(text)))
-                for name, text in islice(texts.items(), MOST_NUL_PLACES)
-            ]
-        )
+        raise InvalidInputs([_forbidden(name, text) for name, text in islice(texts.items(), MOST_PLACES)])
+
+
+def _forbidden(name: str, text: str) -> Fault:
+    shown = plain(without_keys(name).replace(NUL, "\\0"))
+    if NUL in text:
+        return Fault(shown, "nul", _NUL_DETAIL.format(_nul_position(text)))
+    return Fault(shown, "key", _KEY_DETAIL)
 
 
 def _nul_position(text: str) -> str:
@@ -474,16 +478,16 @@ def _nul_position(text: str) -> str:
     return f"line {line}, column {column}" if "\n" in text else f"character {column}"
 
 
-def _nul_places(value: object) -> Iterator[tuple[str, str]]:
-    """Yield the location of each U+0000 in JSON: the dotted path, and the text or name that contains it."""
+def _forbidden_places(value: object) -> Iterator[tuple[str, str]]:
+    """Yield each forbidden text in JSON with its location: the dotted path, and the text or name itself."""
     waiting: list[tuple[str, object]] = [("", value)]
     while waiting:
         place, part = waiting.pop()
         within = f"{place[:200]}." if place else ""
-        if isinstance(part, str) and NUL in part:
+        if isinstance(part, str) and (NUL in part or holds_key(part)):
             yield place or "body", part
         elif isinstance(part, dict):
-            yield from ((f"{within}{name[:80]}", name) for name in part if NUL in name)
+            yield from ((f"{within}{name[:80]}", name) for name in part if NUL in name or holds_key(name))
             waiting += [(f"{within}{name[:80]}", inner) for name, inner in part.items()]
         elif isinstance(part, list):
             waiting += [(f"{within}{number}", inner) for number, inner in enumerate(part)]

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from sqlalchemy import ColumnElement, insert, or_, select
 from sqlalchemy.orm import Session
 
-from app.identity.principal import acting
+from app.identity.principal import BUILT_IN, acting
+from app.identity.schemas.principals import Author
 from app.storage.clock import now
 from app.storage.tables import AuditRow, Base
 from app.storage.units import Statement
@@ -68,6 +69,16 @@ class AuditFilter:
     object: str | None = None  # the path of the object, or of the one it belongs to: designs/<id>
     principal: str | None = None  # id or name
     action: str | None = None  # design.create, or design for all actions on designs
+
+
+def creator(session: Session, principal: str) -> Author | None:
+    """Return the administrator who created a principal; None if the operator or a provider did."""
+    created = AuditRow.action == "principal.add", AuditRow.object == f"principals/{principal}"
+    query = select(AuditRow.principal, AuditRow.name).where(*created)
+    for id, name in session.execute(query):
+        if id not in BUILT_IN:
+            return Author(id=id, name=name)
+    return None
 
 
 def page(session: Session, limit: int, before: str | None, wanted: AuditFilter) -> list[AuditRow]:

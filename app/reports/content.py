@@ -243,6 +243,11 @@ class Signatures:
     items: list[Signature]
     block: str  # the same as JSON, for programs
 
+    @property
+    def is_signed(self) -> bool:
+        """Return whether any step of the approval was taken."""
+        return any(one.name for one in self.items)
+
 
 @dataclass(frozen=True)
 class Report:

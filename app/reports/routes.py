@@ -122,6 +122,7 @@ class ReportRequest:
         else:
             pictures = await run_in_threadpool(self.reports.pictures, report)
             body = await run_in_threadpool(self.press.print, report, pictures)
+            await run_in_threadpool(self.reports.record, report, body)
         return Response(body, 202 if job else 200, headers, media_type=REPORTS[kind])
 
 

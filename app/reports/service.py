@@ -37,14 +37,17 @@ from app.schemas.answers import Quantity
 from app.solids import rows
 from app.solids.models import Models
 from app.storage.artifacts import Artifacts
+from app.storage.clock import now
 from app.storage.database import Database
 from app.storage.errors import NotFound
-from app.storage.tables import RevisionRow
+from app.storage.tables import Base, PrintedReportRow, RevisionRow
+from app.storage.units import insert_new_values
 from cad.field_mesh import Glb
 from cad.stamp import stamped
 
 PENDING = "its picture and drawing were still being made when this report was written"
 SURFACE = "glb"
+_PRINTED = Base.metadata.tables[PrintedReportRow.__tablename__]
 NO_PICTURE = "no picture and drawing could be made of it"
 
 
@@ -90,6 +93,21 @@ class Reports:
         if only is not None and only not in revision.steps:
             raise NotFound(f"revision {number} has no step {only[:80]!r}")
         return worksheet(revision, self.catalogues.templates, system, only=only, has_formulas=has_formulas)
+
+    def record(self, report: Report, pdf: bytes) -> None:
+        """Record a printed report by its SHA-256, if the revision has a signature.
+
+        So `verify-report` recognises the file for as long as the database is kept, whatever later versions
+        of the program print.
+        """
+        if not report.signatures.is_signed:
+            return
+        sha256, at = hashlib.sha256(pdf).hexdigest(), now()
+        key = {"design_id": report.design, "revision": report.revision, "sha256": sha256}
+        with self.database.read() as session:
+            if session.get(PrintedReportRow, key) is not None:
+                return
+        self.database.write(lambda session: insert_new_values(session, _PRINTED, {**key, "at": at}))
 
     def request_pictures(self, id: str, number: int, client: str = "") -> list[str]:
         """Return the jobs that draw the pictures of every built model for a report; empty if all exist."""

@@ -30,7 +30,7 @@ def signatures_of(design: str, revision: int, units: System, steps: Sequence[App
     )
     shown = [step for step in ORDER if step != "withdrawn" or step in taken]
     return Signatures(
-        words=_words(state),
+        words=_words(state) + _common_creator(steps),
         is_released=state == "released",
         items=[_signature(ROLES[step], taken.get(step)) for step in shown],
         block=block.model_dump_json(),
@@ -77,6 +77,19 @@ def _counted(criteria: Sequence[str]) -> str:
 def moment(at: str) -> str:
     """Return a time in its printed form."""
     return f"{at[:10]} {at[11:19]} UTC"
+
+
+def _common_creator(steps: Sequence[Approval]) -> str:
+    """Return a clause about signers whose accounts one administrator created; empty if there are none."""
+    names: dict[str, list[str]] = {}
+    for step in steps:
+        if step.content.account_by is not None:
+            names.setdefault(step.content.account_by.name, []).append(clean(step.name))
+    return "".join(
+        f"; {clean(creator)} created the accounts of {' and '.join(dict.fromkeys(signers))}"
+        for creator, signers in names.items()
+        if len(set(signers)) > 1
+    )
 
 
 def _words(state: ApprovalState) -> str:

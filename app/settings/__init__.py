@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, Field, SecretStr
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
-from app.settings.hosts import check_entry
+from app.settings.hosts import check_entry, check_network
 from app.settings.machines import Count, Lane, check_certificate, check_collector, check_engine, check_lanes
 
 Certificate = Annotated[Path | None, AfterValidator(check_certificate), Field(validate_default=True)]
@@ -68,6 +68,13 @@ class Settings(BaseSettings):
         description=(
             "accepted host names besides localhost, 127.0.0.0/8, [::1] and the address on which the service "
             'listens on; `"*.example.com"` stands for all sub-domains'
+        ),
+    )
+    trusted_proxies: tuple[Annotated[str, AfterValidator(check_network)], ...] = Field(
+        ("127.0.0.1", "::1"),
+        description=(
+            "addresses and networks of the proxies whose `X-Forwarded-For` and `X-Forwarded-Proto` count: "
+            '`["10.0.0.0/24"]`'
         ),
     )
     body_limit: int = Field(16 * 2**20, gt=0, description="largest request body [bytes]")

@@ -93,6 +93,24 @@ def check_entry(entry: str) -> str:
     return entry
 
 
+def check_network(entry: str) -> str:
+    """Return an entry of the trusted proxies, checked but unchanged.
+
+    Raises
+    ------
+    ValueError
+        If it is neither an IP address nor a network of addresses.
+    """
+    try:
+        ip_network(entry)
+    except ValueError:
+        raise ValueError(
+            f"{entry[:80]!r} is no network: write an address such as 10.0.0.7, or a network such as "
+            "10.0.0.0/24 or 2001:db8::/64, whose bits beyond the prefix are 0"
+        ) from None
+    return entry
+
+
 def _is_address(name: str) -> bool:
     try:
         ip_address(name)

@@ -9,6 +9,7 @@ count too, since only those near the surface are small enough to matter.
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import sqrt
 from typing import Any
 
 import numpy as np
@@ -21,23 +22,30 @@ PER_BOX = 4.4
 """Tetrahedra per volume h³ of the boxes (`python -m benchmarks.element_counts`)."""
 
 _SHARE = 0.5  # largest side of a box, relative to the elements in it
+_GROWTH = 0.5 * sqrt(3) / 2  # of the size from the middle of a box to its corner, over its side
 _OCTANTS = np.stack(np.meshgrid(*3 * [[-0.25, 0.25]], indexing="ij"), axis=-1).reshape(-1, 3)
+
+
+def element_sizes(shape: Any, parameters: MeshingParameters) -> Callable[[tuple[float, ...]], float]:
+    """Return the function that gives the size of elements [mm] at a point [mm] near a shape."""
+    analysed = MeshingParameters(parameters, perfstepsend=MeshingStep.ANALYSE)
+    local = OCCGeometry(shape).GenerateMesh(analysed).GetLocalH(1)
+    return lambda point: float(local.GetH(point))
 
 
 def estimated_elements(shape: Any, parameters: MeshingParameters, largest: float, most: float) -> int:
     """Return the estimated number of elements of a mesh, none larger than `largest` [mm].
 
-    The count stops once it exceeds `most`.
+    The count stops once it is certain to exceed `most`; then it returns a smaller number, but above `most`.
     """
-    analysed = MeshingParameters(parameters, perfstepsend=MeshingStep.ANALYSE)
-    sizes = OCCGeometry(shape).GenerateMesh(analysed).GetLocalH(1)
+    size_of = element_sizes(shape, parameters)
     low, high = (np.array([*corner]) for corner in shape.bounding_box)
     side = float((high - low).min())
     counts = np.ceil((high - low) / side).astype(int)
     places = np.stack(np.meshgrid(*map(np.arange, counts), indexing="ij"), axis=-1).reshape(-1, 3)
 
     def size_at(centres: Array) -> Array:
-        return np.array([min(sizes.GetH(tuple(centre)), largest) for centre in centres.tolist()])
+        return np.array([min(size_of(tuple(centre)), largest) for centre in centres.tolist()])
 
     return round(_elements_in(size_at, low + side * (places + 0.5), side, most))
 
@@ -47,11 +55,11 @@ def _elements_in(size_at: Callable[[Array], Array], centres: Array, side: float,
     elements = 0.0
     while len(centres):
         size = size_at(centres)
-        each = PER_BOX * (side / size) ** 3
         is_large = side > _SHARE * size
-        if elements + each.sum() > most:
-            return float(elements + each.sum())
-        elements += float(each[~is_large].sum())
+        elements += PER_BOX * float(np.sum((side / size[~is_large]) ** 3))
+        least = PER_BOX * float(np.sum((side / (size[is_large] + _GROWTH * side)) ** 3))
+        if elements + least > most:
+            return elements + least
         centres = (centres[is_large, None] + side * _OCTANTS).reshape(-1, 3)
         side /= 2
     return elements

@@ -18,7 +18,7 @@ from templates.core.language.template import (
 )
 from templates.groups.engine_cylinders import EACH, EngineCylinders
 from templates.physics.crankshaft.shaft_loads import (
-    has_any_unbalance,
+    greatest_unbalance,
     throw_places,
     web_unbalance,
     webs_are_whole,
@@ -191,7 +191,12 @@ class EngineBalance(EngineCylinders):
              "loads and balance are of rods and pistons alone")  # fmt: skip
     def crank_has_mass(self) -> Truth:
         """At least one throw or web has an unbalance."""
-        return has_any_unbalance(self.U_c, self.U_w, self.U_k)
+        return self.U_max > 0
+
+    @shared(unit="kg*mm")
+    def U_max(self) -> Array:
+        """Return the greatest unbalance of throws, webs and counterweights."""
+        return greatest_unbalance(self.U_c, self.U_w, self.U_k)
 
     @shared
     def layout(self) -> Layout:

@@ -38,11 +38,6 @@ SIGNED_IN = {
     "DELETE /api/v1/principals/{id}/keys/{prefix}",
 }
 READS = {  # by POST: nothing of a design or a worksheet changes
-    "POST /api/v1/templates/{id}/versions/{number}/evaluate",
-    "POST /api/v1/templates/{id}/versions/{number}/solve",
-    "POST /api/v1/templates/{id}/versions/{number}/worksheet",
-    "POST /api/v1/film-pressure",
-    "POST /api/v1/curves",
     "POST /api/v1/worksheets/check",
     "POST /api/v1/designs/{id}/preview",
     "POST /api/v1/designs/{id}/decide",
@@ -51,6 +46,13 @@ READS = {  # by POST: nothing of a design or a worksheet changes
     "POST /api/v1/verify",
     "POST /tables",
     "POST /verdicts",
+}
+CALCULATES = {
+    "POST /api/v1/templates/{id}/versions/{number}/evaluate",
+    "POST /api/v1/templates/{id}/versions/{number}/solve",
+    "POST /api/v1/templates/{id}/versions/{number}/worksheet",
+    "POST /api/v1/film-pressure",
+    "POST /api/v1/curves",
 }
 CHECKS = {
     f"POST {place}/worksheets/{{id}}/{step}"
@@ -88,7 +90,7 @@ def wanted(method, path):
         return "public"
     for table, roles in (
         (SIGNED_IN, ()), (READS, ("viewer",)), (CHECKS, ("checker",)), (ADMINISTERS, ("admin",)),
-        (JOBS, ("viewer", "admin")),
+        (JOBS, ("viewer", "admin")), (CALCULATES, ("viewer", "admin")),
     ):  # fmt: skip
         if name in table:
             return roles

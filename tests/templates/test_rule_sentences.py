@@ -102,6 +102,16 @@ def test_every_rule_that_warns_is_violated_once():
     assert sorted(missing) == []
 
 
+def test_a_crank_without_masses_is_said_to_have_none():
+    cls = newest("engine")
+    raw = {name: value for name, value in {**cls.example, **MASSLESS}.items() if value is not None}
+    said = {warning.detail for warning in evaluate(cls, raw).warnings if warning.code == "massless_crank"}
+    (one,) = said
+    assert one.startswith(
+        "the greatest unbalance of throws, webs and counterweights 0 kg·mm is not above 0 kg·mm;"
+    )
+
+
 def test_a_film_below_its_limit_is_said_to_be_below_it():
     cls = newest("oil_film_cycle")
     warnings = evaluate(cls, {**cls.example, "permissible_film": "200 um"}, level="mobility").warnings

@@ -36,7 +36,7 @@ BODY = {
 }
 
 
-@router.post("/curves", openapi_extra={"requestBody": BODY}, dependencies=[needs("viewer")])
+@router.post("/curves", openapi_extra={"requestBody": BODY}, dependencies=[needs("viewer", "admin")])
 async def read_curve_table(request: Request) -> Curves:
     """Return the curves of a table, such as an indicator diagram: `{"curves": {"pressure": {"value", …}}}`.
 

@@ -115,7 +115,7 @@ router = APIRouter(prefix="/api/v1/templates", tags=["templates"], route_class=L
     "/{id}/versions/{number}/evaluate",
     response_model=Evaluation,
     responses={**DECLARED, **AS_ARRAY, **refusals(406)},
-    dependencies=[needs("viewer")],
+    dependencies=[needs("viewer", "admin")],
 )
 async def evaluate_template(
     request: StrictRequest,
@@ -144,7 +144,7 @@ async def evaluate_template(
     "/{id}/versions/{number}/solve",
     response_model=Solution,
     responses=DECLARED,
-    dependencies=[needs("viewer")],
+    dependencies=[needs("viewer", "admin")],
 )
 async def solve_template(
     request: StrictRequest,
@@ -169,7 +169,7 @@ worksheets = APIRouter(prefix="/api/v1/templates", tags=["templates"], route_cla
     "/{id}/versions/{number}/worksheet",
     response_model=Worksheet,
     responses=DECLARED,
-    dependencies=[needs("viewer")],
+    dependencies=[needs("viewer", "admin")],
 )
 async def write_worksheet(
     request: StrictRequest,

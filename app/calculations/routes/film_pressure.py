@@ -35,7 +35,7 @@ class FilmPressureIn(Bounded):
     )
 
 
-@router.post("/film-pressure", dependencies=[needs("viewer")])
+@router.post("/film-pressure", dependencies=[needs("viewer", "admin")])
 async def show_film_pressure(body: FilmPressureIn, units: Units = "si") -> FilmPressure:
     """Return the pressure [position along the shaft][angle from the narrowest gap].
 

@@ -1,6 +1,6 @@
 """The tables. Times are ISO 8601 texts in UTC; JSON is canonical, so that equal values give equal texts."""
 
-from app.storage.tables.approvals import ApprovalRow, CommentRow
+from app.storage.tables.approvals import ApprovalRow, CommentRow, PrintedReportRow
 from app.storage.tables.base import NAMING, Base, JsonText, NotWritten, canonical_json
 from app.storage.tables.designs import (
     DesignRow,
@@ -37,6 +37,7 @@ __all__ = [
     "JsonText",
     "NotWritten",
     "PrincipalRow",
+    "PrintedReportRow",
     "RevisionModelRow",
     "RevisionRow",
     "SessionRow",

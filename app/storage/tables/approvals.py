@@ -34,6 +34,20 @@ class ApprovalRow(Base):
     at: Mapped[str]
 
 
+class PrintedReportRow(Base):
+    """A report that was printed of a revision with at least one signature."""
+
+    __tablename__ = "printed_report"
+    __table_args__ = (
+        ForeignKeyConstraint(["design_id", "revision"], ["revision.design_id", "revision.number"]),
+    )
+
+    design_id: Mapped[str] = mapped_column(primary_key=True)
+    revision: Mapped[int] = mapped_column(primary_key=True)
+    sha256: Mapped[str] = mapped_column(primary_key=True)  # of the whole file
+    at: Mapped[str]
+
+
 class CommentRow(Base):
     """A comment on a revision."""
 

@@ -26,7 +26,7 @@ from app.designs.service import SaveResult
 from app.http.access import TheClient
 from app.http.problem_kinds import TABLE
 from app.http.problems import refusal
-from app.http.strict_requests import refuse_nul_in
+from app.http.strict_requests import refuse_forbidden_in
 from app.schemas.problems import Problem
 from app.storage.idempotency import Once
 
@@ -164,7 +164,7 @@ class PageServices(Services):
             If nothing was saved.
         """
         with refusals():
-            refuse_nul_in({**patch, "note": note})
+            refuse_forbidden_in({**patch, "note": note})
             change, noted_as = noted({**patch, **({"note": note} if note.strip() else {})})
         return await self.save(self.designs.change, id, change, noted_as, tag_of(revision), self.once)
 
@@ -227,7 +227,7 @@ class PageServices(Services):
             If there are faults; the error lists all of them.
         """
         with refusals():
-            refuse_nul_in(body)
+            refuse_forbidden_in(body)
             try:
                 return TypeAdapter(kind).validate_python(body)
             except ValidationError as error:

@@ -34,7 +34,7 @@ from templates.core.sheets.linear import MOST_UNKNOWNS, LinearBody, system_of
 from templates.core.sheets.lines import Chunk
 from templates.core.sheets.names import FUEL, Names, sort_of
 from templates.core.sheets.single_equation import SolveBody, equation_of
-from templates.core.units.conformity import declared_kind, turns_remark
+from templates.core.units.conformity import declared_kind, leaves_rate_open, turns_remark
 from templates.core.units.nodes import EITHER, Kind, kind_of
 from templates.core.units.sorts import Sort
 from templates.core.units.units import compatible, difference_in, unit
@@ -67,25 +67,27 @@ class Builder:
                 self._find_kinds()
 
     def _find_kinds(self) -> None:
-        """Determine from formulas, in any order, which names in K are temperatures or differences."""
-        in_kelvin = [
-            s for s in self.built.statements if s.kind in ("formula", "given") and self._in_kelvin(s)
-        ]
+        """Determine from formulas, in any order, the kinds of names in K and in 1/s."""
+        open_kinds = [s for s in self.built.statements if s.kind in ("formula", "given") and self._is_open(s)]
         fuel, self.names.fuel = self.names.fuel, FUEL
-        for _ in in_kelvin:  # each round determines one or more, if any
-            found = [statement for statement in in_kelvin if self._finds_kind(statement)]
+        for _ in open_kinds:  # each round determines one or more, if any
+            found = [statement for statement in open_kinds if self._finds_kind(statement)]
             if not found:
                 break
         self.names.fuel = fuel
 
-    def _in_kelvin(self, statement: ParsedStatement) -> bool:
-        if statement.kind not in ("formula", "given") or statement.parts[3] is None:
+    def _is_open(self, statement: ParsedStatement) -> bool:
+        """Return whether the unit of a name leaves open of which kind it is."""
+        if statement.parts[3] is None:
             return False
         sort = self.names.sorts.get(str(statement.parts[0]))
-        return sort is not None and sort.kind.temperatures == EITHER
+        if sort is None:
+            return False
+        is_formula = statement.kind == "formula"
+        return sort.kind.temperatures == EITHER or (is_formula and leaves_rate_open(sort.kind))
 
     def _finds_kind(self, statement: ParsedStatement) -> bool:
-        """Return whether the formula of a name in K determines its kind."""
+        """Return whether the formula of a name in K or 1/s determines its kind."""
         name = str(statement.parts[0])
         try:
             _, got = self.reader.part(statement, statement.parts[3])

@@ -14,6 +14,7 @@ from templates.core.units.nodes import EITHER, Kind
 from templates.core.units.rules import as_difference, in_words, meanings_of
 from templates.core.units.units import Unit, compatible, is_rate, radians, registry
 
+_PER_SECOND = registry.Unit("1/s")
 _TYPED = re.compile(r"-?[0-9.eE+-]+ \S+")
 _MINUTES = re.compile(
     r"(?<![\w.)*/])60(?:\.0*)?\s*\*(?!\*)\s*|\s*(?<!\*)[*/]\s*60(?:\.0*)?(?![\w.(*])(?!\s*\*\*)"
@@ -37,18 +38,28 @@ def misfit(kind: Kind, want: Unit, text: str) -> tuple[str, str] | None:
     if not compatible(kind, want):
         return f"this gives {in_words(kind)}", _remedy_of_rates(kind, want, text)
     if is_rate(want.base) and radians(want.base) and not want.plain_angle and not radians(kind.base):
-        return f"this gives {in_words(kind)}, which counts neither turns nor radians", _counted(text)
+        return f"this gives {in_words(kind)}, which counts neither turns nor radians", _counted(kind, text)
     if want.base != registry.kelvin or want.text == "1":
         return None
     return _other_kind(kind, want, text)
 
 
 def declared_kind(got: Kind, want: Kind) -> Kind:
-    """Return the kind of a declared value: that of its unit, or that of the value itself if the unit is K."""
+    """Return the kind of a declared value: that of its unit, or that of the value if the unit leaves it open.
+
+    A unit leaves the kind open if it is K, or 1/s, which may show rad/s or Hz.
+    """
     counts = got.temperatures
+    if leaves_rate_open(want) and is_rate(got.base):
+        want = replace(want, base=got.base, cycles=got.cycles)
     if want.temperatures != EITHER or counts is None:
         return replace(want, temperatures=want.temperatures if want.temperatures != EITHER else counts)
     return replace(want, temperatures=counts & EITHER or counts)
+
+
+def leaves_rate_open(want: Kind) -> bool:
+    """Return whether a declared unit is 1/s, which may show rad/s or Hz."""
+    return bool(want.base == _PER_SECOND) and not want.cycles
 
 
 def _other_kind(kind: Kind, want: Unit, text: str) -> tuple[str, str] | None:
@@ -78,11 +89,13 @@ def _remedy_of_rates(kind: Kind, want: Unit, text: str) -> str:
     return ""
 
 
-def _counted(text: str) -> str:
-    """Return the possible meanings of a rate in 1/s."""
+def _counted(kind: Kind, text: str) -> str:
+    """Return the possible meanings of a rate in 1/s; one with a factor 2*pi is in radians."""
     if not text:
         return "multiply it by 1 turn or by 1 rad"
     text, minutes = _without_minutes(text)
+    if kind.pi > 0:
+        return f"{minutes}write {_in_brackets(text)} * 1 rad"
     if per := _PER.fullmatch(text.strip()):
         return f"{minutes}write 1 turn / {per[1]} or 1 rad / {per[1]}"
     return f"{minutes}write {_in_brackets(text)} * 1 turn or {_in_brackets(text)} * 1 rad"
@@ -92,6 +105,12 @@ def _without_minutes(text: str) -> tuple[str, str]:
     """Return a product without the factor 60 that formulas in minutes have, and the advice to omit it."""
     bare = _MINUTES.sub("", text) if not re.search(r"[-+,]", text) else text
     return bare, "omit 60, which the units contain, and " if bare != text else ""
+
+
+def _per_minute(names: list[str], text: str) -> bool:
+    """Return whether a formula only divides a speed in turns by 60, as one does who converts rpm."""
+    bare, _ = _without_minutes(text)
+    return bare != text and bare.strip() in names
 
 
 def _in_brackets(text: str) -> str:
@@ -112,7 +131,7 @@ def turns_remark(kind: Kind, want: Unit, text: str) -> str:
         The formula.
     """
     names = sorted(kind.turned)
-    if names and (not radians(want.base) or kind.pi):
+    if names and (not radians(want.base) or kind.pi or _per_minute(names, text)):
         return _both_readings(names, want, text)
     if want.turns and is_rate(want.base) and kind.pi < 0:
         return (
@@ -130,7 +149,7 @@ def _over(name: str, divisor: str) -> str:
 def _both_readings(names: list[str], want: Unit, text: str) -> str:
     which = f"{' and '.join(names)} {'is' if len(names) == 1 else 'are'} given in turns"
     if radians(want.base):
-        return f"{which}, but in a formula the value is in rad/s already: omit `2*pi` or `pi/30`"
+        return f"{which}, but in a formula the value is in rad/s already: omit `2*pi`, `pi/30` or `60`"
     bare, minutes = _without_minutes(text)
     in_turns = bare
     for name in names:

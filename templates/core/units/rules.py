@@ -197,8 +197,8 @@ def product(operation: Operation, kinds: list[Kind], nodes: tuple[Any, ...]) -> 
     if cycles > 0 and pi > 0 and 1 in twos:
         base = base if radians(base) else base * RADIAN
         cycles, pi, twos = cycles - 1, pi - 1, twos - {1}
-    elif radians(base) > 0 and pi < 0 and -1 in twos:
-        base, pi, twos = base / RADIAN, pi + 1, twos - {-1}
+    elif pi < 0 and -1 in twos and (radians(base) > 0 or (is_rate(base) and radians(base))):
+        base, pi, twos = base / RADIAN ** (1 if radians(base) > 0 else radians(base)), pi + 1, twos - {-1}
     whole = Kind(registry.Unit(base), cycles, turned=one.turned | other.turned)
     return _kind(whole, _scaled(operation.sign, nodes, one, other), pi=pi, twos=twos)
 
@@ -243,6 +243,8 @@ def power(operation: Operation, kinds: list[Kind], arguments: tuple[Any, ...]) -
 
 def _raised(kind: Kind, exponent: float) -> Kind:
     base = registry.Unit(kind.base**exponent)
+    if is_rate(base) and (angles := radians(base)) % 1:  # sqrt(k/J) with k in N*m/rad is in rad/s
+        base = registry.Unit(base / RADIAN**angles * RADIAN)
     return _kind(Kind(base, kind.cycles * exponent, turned=kind.turned), None)
 
 

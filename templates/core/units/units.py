@@ -67,9 +67,11 @@ _AMBIGUOUS = {
         "mils?": "write thou for 0.001 inch, mrad for an angle",
         "[gG]rads?": "write deg for degrees, gon for hundredths of a right angle",
         "[GM](?:rad|deg)": "write mrad or deg for an angle",
+        "U(?=/)": "write rpm or rev/min for turns, umol/min for enzyme units",
     }.items()
 }
-"""Words that a reader and Pint interpret differently: `Grad` is German for degrees, here 1e9 rad."""
+"""Words that a reader and Pint interpret differently: `Grad` is German for degrees, here 1e9 rad; `U/min` is
+German for turns per minute, here an enzyme unit."""
 LONGEST_UNIT = 60
 
 
@@ -224,8 +226,12 @@ def compatible(one: Measured, other: Measured) -> bool:
 
 
 def _counted(measured: Measured) -> tuple[float, float]:
-    """Return the exponents of the radian and of the hertz, by which kinds of rates differ."""
-    return radians(measured.base), measured.cycles
+    """Return whether a rate counts angle, and the exponent of the hertz: kinds of rates differ by these.
+
+    The exponent of the radian does not matter: `omega**2 * phi` is an angular acceleration, and `c / J`, with
+    c in N*m*s/rad, an angular speed.
+    """
+    return float(radians(measured.base) != 0), measured.cycles
 
 
 def dimension_of(measured: Measured) -> str:
@@ -321,13 +327,10 @@ def _remedy(want: Unit) -> str:
 
 
 def _meant(got: Unit, want: Unit) -> str:
-    """Return a hint about units that are often mistaken.
-
-    Pint reads C as coulomb, F as farad, and U as an enzyme unit.
-    """
+    """Return a hint about units that are often mistaken: Pint reads C as coulomb and F as farad."""
     if want.base == registry.kelvin and got.text in ("C", "F"):
         return f" ({got.text} is not a temperature: write deg{got.text})"
-    return " (U is not a turn: write rpm or rev/min)" if got.text.startswith("U/") else ""
+    return ""
 
 
 _KINDS = {

@@ -129,10 +129,10 @@ def webs_are_whole(
     return np.ndim(places) == 1 and named
 
 
-@units("kg*m", "kg*m", "kg*m", returns="1")
-def has_any_unbalance(throws: Array, webs: Array, counterweights: Array) -> Truth:
-    """Return whether any throw, web or counterweight has an unbalance [kg m]."""
-    return any(bool(np.any(one != 0)) for one in (throws, webs, counterweights))
+@units("kg*m", "kg*m", "kg*m", returns="kg*m")
+def greatest_unbalance(throws: Array, webs: Array, counterweights: Array) -> Array:
+    """Return the greatest unbalance of throws, webs and counterweights, by its absolute value [kg m]."""
+    return np.asarray(max(float(np.max(np.abs(one))) for one in (throws, webs, counterweights)))
 
 
 @units(None, None, returns="1")

@@ -112,6 +112,24 @@ class TestHeadings:
             assert len(assumed) == 1
             assert f"{kind} pressure" in assumed[0]
 
+    @pytest.mark.parametrize(
+        ("head", "angle", "pressure"),
+        [
+            ("\ufeff°KW;bar\r", "deg", "bar"),
+            ("deg;psi", "deg", "psi"),
+            ("rad;kPa", "rad", "kPa"),
+            ("[°CA];[bar(a)]", "deg", "bar"),
+            ("deg;HPA", "deg", "hPa"),
+        ],
+    )
+    def test_headings_that_are_only_units(self, head, angle, pressure):
+        curves, _ = read(f"{head}\n-1;1,5\n1;2,5\n")
+        assert curves == {"crank_angle": ([-1, 1], angle), "pressure": ([1.5, 2.5], pressure)}
+
+    def test_two_pressures_with_headings_that_are_only_units(self):
+        curves, _ = read("°CA;bar;bar\n0;1;2\n90;3;4\n")
+        assert curves["pressure_2"] == ([2, 4], "bar")
+
     def test_lines_above_the_headings_and_comments(self):
         text = "Engine 7, cylinder 3\nDate;29.11.2026;x\n# a remark\nphi;p\ndeg;bar\n0;1,5\n90;2,5\n"
         curves, assumed = read(text)
@@ -265,6 +283,20 @@ class TestCycles:
             curves, assumed = read(table(one, gas(one)))
             assert curves["phi"][0] == pytest.approx(one)
             assert not any("cycle" in one for one in assumed)
+
+    @pytest.mark.parametrize("order", [slice(None, None, -1), np.r_[72:144, 0:72], np.r_[30:144, 0:30]])
+    def test_rows_of_one_cycle_in_another_order(self, order):
+        one = np.arange(0, 720, 5.0)
+        curves, assumed = read(table(one[order], gas(one[order])))
+        assert "rows put in order of the crank angle" in assumed
+        assert curves["phi"][0] == pytest.approx(one)
+        assert curves["p"][0] == pytest.approx(gas(one), rel=1e-8)
+
+    def test_an_angle_that_is_given_twice_is_left_to_the_template(self):
+        angles = [0, 90, 45, 90]
+        curves, assumed = read(table(angles, [1, 2, 3, 4]))
+        assert curves["phi"][0] == angles
+        assert assumed == ["°CA"]
 
     def test_columns_of_single_cycles_and_a_count_of_cycles(self):
         rows = "\n".join(f"{a};{a};{a + 2};{a + 4}" for a in range(10))

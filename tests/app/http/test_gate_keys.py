@@ -9,6 +9,7 @@ from app.identity.door import Door
 from app.identity.keys import new_key
 from app.identity.service import Changes
 from app.storage.errors import DatabaseUnavailable
+from templates.door import built_in
 
 WRONG = {
     "unknown": new_key().text,
@@ -83,6 +84,13 @@ def test_an_administrator_needs_another_role_for_designs(team):
     with team.http("admin") as http:
         assert http.get("/api/v1/designs").status_code == 403
         assert http.get("/api/v1/jobs").status_code == 200
+
+
+def test_an_administrator_evaluates_templates(team):
+    inputs = built_in().get("journal_friction", 1).example
+    with team.http("admin") as http:
+        place = "/api/v1/templates/journal_friction/versions/1/evaluate"
+        assert http.post(place, json={"inputs": inputs}).status_code == 200
 
 
 def test_a_key_with_a_scope_does_no_more(team):

@@ -1,10 +1,12 @@
-"""U+0000 is refused in every text, naming the field, with both kinds of database."""
+"""U+0000 and keys of the service are refused in every text, naming the field, with both kinds of database."""
 
 import pytest
 from scaling import assert_linear
 from serving import API, created, faults
 
-from app.http.strict_requests import has_nul
+from app.http.strict_requests import is_forbidden
+
+KEY = f"cw_{'a1' * 5}_{'Z-_9' * 10}abc"
 
 
 @pytest.fixture(scope="module")
@@ -57,8 +59,39 @@ def test_a_backslash_before_the_escape_is_a_text(http):
     ],
 )
 def test_the_character_is_no_other_that_looks_like_it(text, is_there):
-    assert has_nul(text) is is_there
+    assert is_forbidden(text) is is_there
 
 
 def test_the_search_is_linear():
-    assert_linear(has_nul, lambda length: (b"\\" * length + b"u000") * 2, 2**18)
+    assert_linear(is_forbidden, lambda length: (b"\\" * length + b"u000") * 2, 2**18)
+
+
+@pytest.mark.parametrize(
+    ("document", "name"),
+    [
+        ({"name": KEY}, "name"),
+        ({"name": "x", "note": f"my key is {KEY}."}, "note"),
+        ({"name": "x", "parameters": {KEY: "1"}}, "parameters.cw_a1a1a1a1a1_***"),
+        ({"name": "x", "labels": ["a", KEY]}, "labels.1"),
+    ],
+)
+def test_a_key_in_a_text_is_refused_and_not_repeated(http, document, name):
+    answer = http.post(f"{API}/designs", json=document)
+    assert faults(answer) == {name: "key"}
+    assert KEY not in answer.text
+
+
+def test_a_key_in_a_comment_or_a_worksheet_is_refused(http, design):
+    place = f"{API}/designs/{design['id']}"
+    assert faults(http.post(f"{place}/revisions/1/comments", json={"text": KEY})) == {"text": "key"}
+    assert faults(http.post(f"{API}/worksheets", json={"id": "b", "text": f"a := 1 {KEY}"})) == {
+        "text": "key"
+    }
+
+
+def test_the_search_for_keys_is_linear():
+    assert_linear(is_forbidden, lambda length: b"cw_a1a1a1a1a1_" * (length // 14), 2**18)
+
+
+def test_what_only_begins_as_a_key_is_a_text(http):
+    assert created(http, {"name": KEY[:-1]})["name"] == KEY[:-1]

@@ -2,16 +2,19 @@
 
 import io
 
+import httpx
 import pypdf
 import pytest
 from approving import Room, signed, signing
 from click.testing import CliRunner
 from serving import API, created, paper, patched
 
-from app.approvals.schemas import ATTACHMENT, Approvals
+from app.approvals.content import hashed
+from app.approvals.schemas import ATTACHMENT, Approvals, BlockStep, SignedContent
 from app.cli.approvals import verify_report_command
 from app.cli.connections import KEY
 from app.identity.service import Changes
+from app.reports.paper import Press
 from app.reports.verification import NotReport, read_block, verify
 
 
@@ -128,14 +131,15 @@ def test_a_changed_page_is_named(room, design, printed, unsigned):
     pages.add_attachment(ATTACHMENT, read_block(printed).model_dump_json().encode())
     failed = failures(written(pages), approvals_of(room.author, design), printed)
     assert failed
-    assert all(line.startswith("the text differs: the file says") for line in failed)
+    assert failed[0].startswith("the service has not printed this file")
+    assert all(line.startswith("the text differs: the file says") for line in failed[1:])
 
 
 @pytest.mark.slow
 def test_other_bytes_of_the_same_text_are_named(room, design, printed):
     same = with_block(printed, lambda block: block)
-    (failed,) = failures(same, approvals_of(room.author, design), printed)
-    assert "the text is the same, but pictures, fonts or hidden parts differ" in failed
+    failed = failures(same, approvals_of(room.author, design), printed)
+    assert failed[1:] == ["the text is the same as today; pictures, fonts or hidden parts differ"]
 
 
 @pytest.mark.slow
@@ -203,11 +207,58 @@ def test_the_command_verifies_against_a_service(team, design, printed, tmp_path)
     environment = {"CRANKWRIGHT_KEY": team.keys["viewer"]}
     run = CliRunner().invoke(verify_report_command, [str(file), "--url", team.server.url], env=environment)
     assert run.exit_code == 0, run.output
-    assert "holds  every byte is that of the report as the service prints it" in run.output
+    assert "holds  every byte is that of the report as the service printed it, 20" in run.output
     file.write_bytes(with_block(printed, lambda block: block.model_copy(update={"revision": 2})))
     run = CliRunner().invoke(verify_report_command, [str(file), "--url", team.server.url], env=environment)
     assert run.exit_code == 1
     assert "FAILS  not released" in run.output
+
+
+@pytest.mark.slow
+def test_a_report_verifies_after_an_upgrade_that_prints_other_pages(
+    team, design, printed, tmp_path, monkeypatch
+):
+    """The service recognises the file, because it recorded each print of the signed revision."""
+    file = tmp_path / "report.pdf"
+    file.write_bytes(printed)
+    monkeypatch.setattr(Press, "print", lambda *_: pdf_with("another layout"))
+    environment = {KEY: team.keys["viewer"]}
+    run = CliRunner().invoke(verify_report_command, [str(file), "--url", team.server.url], env=environment)
+    assert run.exit_code == 0, run.output
+    assert "as the service printed it" in run.output
+    with team.http("viewer") as http:
+        assert pdf_of(http, design) == pdf_with("another layout")
+
+
+def pdf_with(words):
+    writer = pypdf.PdfWriter()
+    writer.add_blank_page(100, 100)
+    writer.add_metadata({"/Title": words})
+    return written(writer)
+
+
+@pytest.mark.slow
+def test_a_print_that_nobody_recorded_is_compared_by_its_numbers(room, design, printed, unsigned):
+    """Steps from before prints were recorded lack the mark; the digests are made anew for them here."""
+    now = approvals_of(room.author, design)
+    steps, previous = [], None
+    for one in now.steps:
+        raw = {**one.content.plain(), "previous": previous}
+        del raw["prints"]
+        content = SignedContent.model_validate(raw)
+        previous = hashed(content)
+        steps.append(one.model_copy(update={"content": content, "digest": previous}))
+    old = now.model_copy(update={"steps": steps, "prints": []})
+
+    def signed_by_old(pdf):
+        update = {"steps": [BlockStep(step=s.step, name=s.name, at=s.at, digest=s.digest) for s in steps]}
+        return with_block(pdf, lambda _: read_block(printed).model_copy(update=update))
+
+    right, wrong = signed_by_old(printed), signed_by_old(unsigned)
+    lines = list(verify(right, read_block(right), old, printed))
+    assert all(line.holds for line in lines)
+    assert "printed by another version" in lines[-1].words
+    assert "numbers that the report of this revision has not" in failures(wrong, old, printed)[0]
 
 
 @pytest.fixture
@@ -245,3 +296,22 @@ def test_a_block_with_another_place_for_a_design_is_refused_before_anything_is_a
 def test_a_service_that_is_away_or_does_not_know_the_key_is_named(verified, printed):
     assert "no service answers at http://127.0.0.1:1" in verified(printed, url="http://127.0.0.1:1")
     assert "Error: " in verified(printed, key="cw_aaaaaaaaaa_" + "b" * 43)
+
+
+@pytest.mark.slow
+def test_signers_whose_accounts_one_administrator_created_are_shown(team, room):
+    """The operator created the others by command."""
+    pair = []
+    for name in ("Ada of Eve", "Ben of Eve"):
+        made = room.admin.post(f"{API}/principals", json={"name": name, "roles": ["checker"]}).json()
+        key = room.admin.post(f"{API}/principals/{made['id']}/keys", json={"name": "test"}).json()["key"]
+        pair.append(httpx.Client(base_url=room.admin.base_url, headers={"Authorization": f"Bearer {key}"}))
+    design = created(room.author, paper(name="by two of one"))
+    signing(room.author, design, "calculated")
+    with pair[0] as first, pair[1] as second:
+        signing(first, design, "checked")
+        assert "created the accounts" not in text_of(pdf_of(room.author, design))
+        signing(second, design, "released")
+    assert "Released; admin created the accounts of Ada of Eve and Ben of Eve." in text_of(
+        pdf_of(room.author, design)
+    )

@@ -140,7 +140,7 @@ ODD = [
     ("50 1/s", "rpm", "ambiguous_unit"),
     ("50 Hz", "rpm", "ambiguous_unit"),
     ("50 1/min", "rpm", "ambiguous_unit"),
-    ("50 U/min", "rpm", "wrong_unit"),
+    ("50 U/min", "rpm", "ambiguous_unit"),
     ("50 rpm", "Hz", "ambiguous_unit"),
     ("80 C", "degC", "wrong_unit"),
     ("80 F", "degC", "wrong_unit"),

@@ -335,6 +335,19 @@ def create_approvals() -> None:
         postgresql_where=sa.text("step <> 'withdrawn'"),
     )
     op.create_table(
+        "printed_report",
+        sa.Column("design_id", sa.Text(), nullable=False),
+        sa.Column("revision", sa.Integer(), nullable=False),
+        sa.Column("sha256", sa.Text(), nullable=False),
+        sa.Column("at", sa.Text(), nullable=False),
+        sa.ForeignKeyConstraint(
+            ["design_id", "revision"],
+            ["revision.design_id", "revision.number"],
+            name="fk_printed_report_design_id_revision_revision",
+        ),
+        sa.PrimaryKeyConstraint("design_id", "revision", "sha256", name="pk_printed_report"),
+    )
+    op.create_table(
         "comment",
         sa.Column("id", sa.Text(), nullable=False),
         sa.Column("design_id", sa.Text(), nullable=False),
@@ -428,6 +441,7 @@ def guard_rows(dialect: str) -> None:
     guard("audit_kept", "DELETE", "audit", "")
     for event in ("UPDATE", "DELETE"):
         guard(f"approval_{event.lower()}", event, "approval", "")
+        guard(f"printed_report_{event.lower()}", event, "printed_report", "")
         for table in ("revision", "revision_model"):
             guard(f"{table}_signed_{event.lower()}", event, table, f"EXISTS ({SIGNED.format(row='OLD')})")
     guard("revision_model_signed_insert", "INSERT", "revision_model", f"EXISTS ({SIGNED.format(row='NEW')})")

@@ -25,6 +25,9 @@ given mu [mPa*s] = 10 mPa*s "viscosity"
 given P [MPa] = 3.2 MPa "pressure"
 given k [N/m] = 1e6 N/m "stiffness"
 given m [kg] = 0.01 kg "mass"
+given c_t [N*m/rad] = 1e6 N*m/rad "torsional stiffness"
+given b_t [N*m*s/rad] = 1000 N*m*s/rad "torsional damping"
+given J [kg*m**2] = 2 kg*m**2 "inertia"
 """
 N = 5000 * 2 * math.pi / 60
 
@@ -111,6 +114,8 @@ class TestReports:
             ("rad/s", "pi*N/30"),
             ("rpm", "30/pi*w"),
             ("rps", "w*30/pi"),
+            ("rad/s", "N/60"),
+            ("rps", "N / 60"),
         ],
     )
     def test_factors_of_turns_between_speeds_are_reported(self, unit, text):
@@ -130,6 +135,9 @@ class TestReports:
             ("W", "T*w", 190.9859),
             ("rad", "N*t", 0.1 * N),
             ("rad/s**2", "N/t", 10 * N),
+            ("rad/s**2", "w**2 * sin(w*t)", 1e4 * math.sin(10)),
+            ("rad/s**2", "w**2 * 2 rad", 2e4),
+            ("rpm", "N*20/60", 5000 / 3),
             ("m/s", "r*w", 200),
             ("1", "sin(w*t)", math.sin(10)),
             ("l/min", "48 cm**3/rev * N", 240),
@@ -174,6 +182,13 @@ class TestHertz:
         [
             ("rad/s", "v/r", 5),
             ("rad/s", "sqrt(k/m)", 1e4),
+            ("rad/s", "sqrt(c_t/J)", 707.1068),
+            ("rpm", "(c_t/J)**0.5", 6752.372),
+            ("Hz", "sqrt(c_t/J)/(2*pi)", 112.5395),
+            ("Hz", "1/(2*pi)*sqrt(c_t/J)", 112.5395),
+            ("rad/s", "b_t/J", 500),
+            ("Hz", "b_t/J/(2*pi)", 79.57747),
+            ("rad/s", "2*pi*f*1 rad", 314.1593),
             ("Hz", "v/r", 5),
             ("Hz", "sqrt(k/m)/(2*pi)", 1591.549),
             ("Hz", "w/(2*pi)", 15.91549),
@@ -211,6 +226,9 @@ class TestHertz:
             ("deg/s", "1 / t", ["1 turn / t", "1 rad / t"], [3600, 572.9578]),
             ("rpm", "1 turn/t", ["1 turn / t"], [600]),
             ("rpm", "f", ["2*pi*f"], [3000]),
+            ("rpm", "2*pi/t", ["(2*pi/t) * 1 rad"], [600]),
+            ("Hz", "sqrt(c_t/J)", ["(sqrt(c_t/J))/(2*pi)"], [112.5395]),
+            ("rad/s", "f*1 rad", ["2*pi*(f*1 rad)"], [314.1593]),
             ("rad/s", "f", ["2*pi*f"], [314.1593]),
             ("rad/s", "pi*f", ["2*pi*f"], [314.1593]),
             ("rad/s", "f + 1/t", ["2*pi*(f + 1/t)"], [376.9911]),
@@ -233,6 +251,19 @@ class TestHertz:
         fault = refused(formula(unit, f"if {text} then 1 else 2" if "<" in text else text))
         assert fault.code == "unit_mismatch"
         assert "2*pi" in fault.remedy
+
+    @pytest.mark.parametrize(
+        ("of", "unit", "remedy", "value"),
+        [("f", "rad/s", "2*pi*u", 314.1593), ("w", "Hz", "u/(2*pi)", 15.91549)],
+    )
+    def test_a_name_in_1_per_s_has_the_kind_of_its_formula(self, of, unit, remedy, value):
+        """Whatever the order of the lines."""
+        between = f'u [1/s] = {of} "rate"\n'
+        for text in (between + formula(unit, "u"), formula(unit, "u") + "\n" + between):
+            fault = refused(text)
+            assert remedy in fault.remedy
+            cls = sheet(text.replace(formula(unit, "u"), formula(unit, remedy)))
+            assert evaluate(cls, cls.example).outputs["x"].value == pytest.approx(value, rel=1e-5)
 
     @pytest.mark.parametrize("sign", ["<", "<=", ">", ">=", "==", "!="])
     def test_a_number_in_1_per_s_beside_turns_names_both(self, sign):
