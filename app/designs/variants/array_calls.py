@@ -21,6 +21,7 @@ from templates.core.language.levels import at_level
 from templates.core.language.spec import Curve, Declaration, Profile, Table
 from templates.core.language.template import Template
 from templates.core.units.quantity import TypedQuantity
+from templates.core.units.units import Value
 
 MOST_ROWS = 4096
 
@@ -123,9 +124,9 @@ def _column(asked: Sequence[StepInputs], name: str) -> Raw:
     return TypedQuantity(np.asarray(scale.from_si(si)).tolist(), scale.text, si, {})
 
 
-def _in_row(row: int, error: Any) -> Any:
+def _in_row(row: int, error: Value | None) -> Value | None:
     """Return the error of one row; the array call has computed it with everything that it depends on."""
-    return error[row] if np.ndim(error) else error
+    return error[row] if isinstance(error, np.ndarray) and error.ndim else error
 
 
 @dataclass(frozen=True)

@@ -59,6 +59,12 @@ def test_a_check_shows_proposals_and_how_the_diagram_was_read(http):
     assert fault(answer, "stroke") == ""
 
 
+def test_a_diagram_is_used_although_an_ideal_cycle_was_left_chosen(http):
+    answer = send(http, {"layout": "in_line_4", "gas": "petrol"}, gas_table(), "check")
+    assert '<option value="diagram" selected>' in answer.text
+    assert "crank angle [deg],pressure [bar(a)]" in answer.text
+
+
 def test_assumed_values_are_marked_beside_the_verdict_and_in_the_report(http):
     document = {
         "name": "ratios",
