@@ -1,18 +1,21 @@
 """Measure the error of every level of `oil_film` against the converged solution, and the cost of a point.
 
-python -m benchmarks.accuracy measure    about 9 minutes: writes templates/oil_film/*.accuracy.json
+python -m benchmarks.accuracy measure    about 12 minutes: writes templates/oil_film/*.accuracy.json
+python -m benchmarks.accuracy errors     about 4 minutes: only the errors of `oil_film` 2
+python -m benchmarks.accuracy held_out   how often those of stiffness are right at points that are left out
 python -m benchmarks.accuracy costs      the costs alone
 python -m benchmarks.accuracy expected   the time to expect of an evaluation; after `measure`
 python -m benchmarks.accuracy own        the errors that other bearings state, from `benchmarks.shapes`
 python -m benchmarks.accuracy_picture  docs/pictures/oil_film_accuracy.png from those files
 
-The converged films are solutions extrapolated from 256 × 32 and 512 × 64 intervals at 1500 random points,
-which `benchmarks.film_map` stores. Levels map, reynolds and mass_conserving are compared with these
-solutions; the closed forms are compared with the map on a dense grid, and the error of the map is added. The
-error of a cell is the largest error found in it. The bearings are plain and aligned, without grooves;
-`benchmarks.shapes` compares meshes for other bearings, and `benchmarks.heat_balance_accuracy` measures the
-error that a heat balance adds, which is in the same accuracy file. Errors are relative: of an angle to 90°,
-of a stiffness or damping to the largest of its four coefficients.
+The converged films are solutions at 2100 random points, which `benchmarks.film_map` stores: extrapolated from
+256 × 32 and 512 × 64 intervals, stiffness and damping on 1024 × 64. Levels map, reynolds and mass_conserving
+are compared with these solutions; the closed forms are compared with the map on a dense grid, and the error
+of the map is added. The error of a cell is the largest error found in it. The bearings are plain and aligned,
+without grooves; `benchmarks.shapes` compares meshes for other bearings, and
+`benchmarks.heat_balance_accuracy` measures the error that a heat balance adds, which is in the same accuracy
+file. Errors are relative: of an angle to 90°, of a stiffness or damping to the largest of its four
+coefficients.
 """
 
 import itertools
@@ -26,8 +29,10 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from benchmarks import shapes
+from benchmarks.film_map import LIGHT, POINTS
 from benchmarks.heat_balance_accuracy import heat_balance
 from benchmarks.truths import (
     COEFFICIENTS,
@@ -63,11 +68,24 @@ LOADS = [0.01, 0.03, 0.1, 0.2, 0.5, 1, 1.5, 2, 3, 4, 5, 7, 10, 14, 20, 30, 40, 6
          300, 500, 800, 1360]  # fmt: skip
 FINER = 7
 MARGIN = 1.02
-SCATTERED = 8, 8
+ROWS = np.linspace(0, np.arctanh(ECCENTRICITY_LIMIT), 9)
+"""Edges of the coarse cells over atanh(eps) [-]."""
+LIGHT_ROWS = np.concatenate([[0, 0.03, 0.1, 0.3], ROWS[1:]])
+"""The same for stiffness and damping, which converge slowly at light load [-]."""
+COLUMNS = 8
+"""Number of coarse cells over ln(B/D)."""
 NEARBY = 1.5
 SOLVED = ("reynolds", "mass_conserving")
 """Levels that also solve bearings that are not plain."""
 FEWER_POINTS = {"reynolds": 800, "mass_conserving": 400}
+"""Number of points for the errors of the film at slow levels."""
+FEWER_COEFFICIENTS = {"reynolds": 800}
+"""The same for stiffness and damping, besides those at light load; their errors scatter more."""
+
+TRUTH = (
+    "Swift-Stieber film, extrapolated from 256 × 32 and 512 × 64 intervals; stiffness and damping on "
+    "1024 × 64"
+)
 
 Errors = dict[str, Array]
 
@@ -148,40 +166,66 @@ def closed_form(level: str, load: Callable[..., Array], own: dict[str, Array]) -
     return {name: MARGIN * cell + own[name] for name, cell in cells.items()}
 
 
-def solved(level: str) -> dict[str, Array]:
-    """Return the largest error of a level near each cell, against the converged solutions, with a margin."""
+def points_of(level: str) -> NDArray[np.intp]:
+    """Return the indices of the converged solutions that a level is compared with."""
+    last = POINTS + LIGHT
+    return np.asarray(np.r_[: FEWER_COEFFICIENTS.get(level, POINTS), POINTS:last], np.intp)
+
+
+def solved_errors(level: str) -> tuple[Array, Array, Errors, Errors]:
+    """Return points x and y, and there the errors of the film and those of stiffness and damping."""
     x, y, truth, matrices = converged(streamers=level == "mass_conserving")
-    some = slice(FEWER_POINTS.get(level, x.size))
-    x, y = x[some], y[some]
-    truth = JournalFilm(*(getattr(truth, field.name)[some] for field in fields(truth)))
-    ratio = np.exp(y)
+    used = points_of(level)
+    x, y, matrices = x[used], y[used], (matrices[0][used], matrices[1][used])
+    truth, ratio = JournalFilm(*(getattr(truth, field.name)[used] for field in fields(truth))), np.exp(y)
     film = static_film_at(level, truth.So, ratio)
     eps = np.where(np.isfinite(film.eps), film.eps, np.nan)
-    solution = coefficients_at(level, eps, ratio)
-    errors = {
-        **film_errors(film.admitted(eps), truth),
-        **coefficient_errors(solution, (matrices[0][some], matrices[1][some])),
+    linear = coefficient_errors(coefficients_at(level, eps, ratio), matrices)
+    return x, y, film_errors(film.admitted(eps), truth), linear
+
+
+def solved(level: str) -> dict[str, Array]:
+    """Return the largest error of a level near each cell, against the converged solutions, with a margin."""
+    x, y, of_film, linear = solved_errors(level)
+    some = slice(FEWER_POINTS.get(level, POINTS))
+    return {
+        **{name: spread(x[some], y[some], error[some], ROWS) for name, error in of_film.items()},
+        **{name: spread(x, y, error, LIGHT_ROWS) for name, error in linear.items()},
     }
-    return {name: spread(x, y, error) for name, error in errors.items()}
 
 
-def spread(x: Array, y: Array, error: Array) -> Array:
+def held_out(level: str = "mass_conserving") -> None:
+    """Print how often stiffness and damping of each fifth are within the table of the other four fifths."""
+    x, y, _, linear = solved_errors(level)
+    fifth = np.random.default_rng(5).integers(0, 5, x.size)
+    row = np.clip(np.searchsorted(np.arctanh(np.minimum(EPS, ECCENTRICITY_LIMIT)), x) - 1, 0, len(EPS) - 2)
+    column = np.clip(np.searchsorted(np.log(WIDTH), y) - 1, 0, len(WIDTH) - 2)
+    for name, error in linear.items():
+        stated = np.full(x.size, np.nan)
+        for k in range(5):
+            others = fifth != k
+            table = spread(x[others], y[others], error[others], LIGHT_ROWS)
+            stated[~others] = table[row, column][~others]
+        known = np.isfinite(stated) & np.isfinite(error)
+        print(f"{name:24} {(stated >= error)[known].sum()} of {known.sum()}")
+
+
+def spread(x: Array, y: Array, error: Array, rows_at: Array) -> Array:
     """Return errors at scattered points as a table of cells.
 
     Each cell gets the largest error of the coarse cells that it touches and of their neighbours.
     """
-    top, low, high = np.arctanh(ECCENTRICITY_LIMIT), np.log(WIDTH[0]), np.log(WIDTH[-1])
+    edges = rows_at, np.linspace(np.log(WIDTH[0]), np.log(WIDTH[-1]), COLUMNS + 1)
 
-    def place(values: Array, first: float, last: float, cells: int) -> Array:
-        return np.clip((values - first) / (last - first) * cells, 0, cells - 1e-9)
+    def cell(values: Array, axis: int) -> NDArray[np.intp]:
+        return np.clip(np.searchsorted(edges[axis], values, side="right") - 1, 0, edges[axis].size - 2)
 
-    row, column = place(x, 0, top, SCATTERED[0]).astype(int), place(y, low, high, SCATTERED[1]).astype(int)
-    coarse = np.full(SCATTERED, np.nan)
-    for i, j in np.ndindex(*SCATTERED):
+    row, column = cell(x, 0), cell(y, 1)
+    coarse = np.full((rows_at.size - 1, COLUMNS), np.nan)
+    for i, j in np.ndindex(*coarse.shape):
         near = error[(np.abs(row - i) <= 1) & (np.abs(column - j) <= 1)]
         coarse[i, j] = NEARBY * near.max()
-    rows = place(np.arctanh(np.minimum(EPS, ECCENTRICITY_LIMIT)), 0, top, SCATTERED[0]).astype(int)
-    columns = place(np.log(WIDTH), low, high, SCATTERED[1]).astype(int)
+    rows, columns = cell(np.arctanh(np.minimum(EPS, ECCENTRICITY_LIMIT)), 0), cell(np.log(WIDTH), 1)
     return np.array([
         [coarse[a : b + 1, c : d + 1].max() for c, d in itertools.pairwise(columns)]
         for a, b in itertools.pairwise(rows)
@@ -213,7 +257,7 @@ def cost(level: str) -> dict[str, float]:
 
     The figure is also valid on a busy machine.
     """
-    So, many = 3.5718, (FEWER_POINTS.get(level) and 20) or 20_000
+    So, many = 3.5718, 20 if level in SOLVED else 20_000
 
     def seconds(count: int) -> float:
         loads: Any = np.full(count, So) if count > 1 else np.float64(So)
@@ -233,7 +277,7 @@ def content_of(
     return {
         "template": {"id": cls.id, "version": cls.version},
         "made_by": "python -m benchmarks.accuracy measure",
-        "truth": "Swift-Stieber film, extrapolated from 256 × 32 and 512 × 64 intervals",
+        "truth": TRUTH,
         "truths": truths,
         "convention": CONVENTION,
         "error": "largest found in each cell; relative, of an angle to 90°, of a stiffness or damping to the "
@@ -266,8 +310,8 @@ def axis(attribute: str, name: str, values: list[float]) -> dict[str, Any]:
     return {"attribute": attribute, "name": name, "values": values}
 
 
-def measure() -> None:
-    """Measure errors and costs and write both files."""
+def error_tables() -> dict[str, Any]:
+    """Return the references and the errors of every level."""
     own = solved("map")
     tables = {
         "short_bearing": closed_form("short_bearing", load_Ocvirk_1952, own),
@@ -276,14 +320,18 @@ def measure() -> None:
         "reynolds": solved("reynolds"),
         "mass_conserving": solved("mass_conserving"),
     }
-    levels = {
+    return {
         level: {
-            "cost": cost(level),
             "truth": {name: truth_of(level, name) for name in table},
             "errors": {name: rounded(t) for name, t in table.items()},
         }
         for level, table in tables.items()
     }
+
+
+def measure() -> None:
+    """Measure errors and costs and write both files."""
+    levels = {level: {"cost": cost(level), **table} for level, table in error_tables().items()}
     for level in SOLVED:
         levels[level] |= own_errors()
     width = axis("b", "width_ratio", WIDTH)
@@ -317,6 +365,15 @@ def own_errors() -> dict[str, Any]:
         "held": held,
     }
     return {"own": expected, "own_measured": about}
+
+
+def errors() -> None:
+    """Measure and write only the errors of the levels of `oil_film` 2."""
+    path = FOLDER / "oil_film_v2.accuracy.json"
+    content = json.loads(path.read_text(encoding="utf-8"))
+    for level, table in error_tables().items():
+        content["levels"][level] |= table
+    write(OilFilm, content | {"truth": TRUTH})
 
 
 def own() -> None:
@@ -366,4 +423,11 @@ def _evaluating(level: str) -> float:
 
 
 if __name__ == "__main__":
-    {"measure": measure, "costs": costs, "own": own, "expected": expected}[sys.argv[1]]()
+    {
+        "measure": measure,
+        "errors": errors,
+        "held_out": held_out,
+        "costs": costs,
+        "own": own,
+        "expected": expected,
+    }[sys.argv[1]]()

@@ -38,6 +38,33 @@ TERMS = (
         " clearance. S = 1/(2 pi So).",
     ),
     Term(("din 31652", "din iso 7902"), "iso 7902", "DIN 31652:1983 has the method of ISO 7902:1998."),
+    Term(("petroff",), "petrov", "Petroff is another spelling of Petrov."),
+    Term(
+        ("hersey",),
+        "duty parameter",
+        "Hersey's number is eta N / P with N in revolutions. The templates give Stribeck's duty parameter eta"
+        " omega / p, which is 2 pi times as large.",
+    ),
+    Term(("dubois",), "ocvirk", "DuBois and Ocvirk solved the short bearing."),
+    Term(
+        ("kingsbury",), "thrust", "Kingsbury's and Michell's bearings are thrust bearings with tilting pads."
+    ),
+    Term(
+        ("roller bearing", "roller bearings", "ball bearing", "ball bearings", "lundberg", "palmgren"),
+        "rolling bearing",
+        "Lundberg and Palmgren: the life of rolling bearings, as in ISO 281.",
+    ),
+    Term(("palmgren",), "rainflow", "Palmgren and Miner: damage adds up in proportion to the cycles."),
+    Term(
+        ("wohler", "woehler", "s n curve", "sn curve"),
+        "basquin",
+        "A Wöhler curve, or S-N curve, states the life over the stress; Basquin's line is one.",
+    ),
+    Term(
+        ("haigh",),
+        "goodman",
+        "A Haigh diagram shows the amplitude over the mean stress; Goodman's line is one.",
+    ),
 )
 
 _texts: WeakKeyDictionary[type[Template], str] = WeakKeyDictionary()

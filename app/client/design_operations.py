@@ -52,6 +52,7 @@ class DesignFilter(TypedDict, total=False):
     template: str
     tag: str | Sequence[str]
     archived: Literal["false", "true", "any"]
+    deleted: Literal["false", "true"]
 
 
 def designs(**wanted: Unpack[DesignFilter]) -> Exchange[list[DesignSummary]]:
@@ -107,9 +108,14 @@ def restore(
     return saved(post(path, {"note": note}, {**_match(design), **once(key)}), on_progress)
 
 
-def delete(id: str) -> Exchange[None]:
-    """Remove a design from the lists; its revisions are kept."""
-    checked((yield Request("DELETE", f"{BASE}/designs/{id}")))
+def delete(design: Design) -> Exchange[None]:
+    """Remove a design that was read before from the lists; `undelete` restores it."""
+    checked((yield Request("DELETE", f"{BASE}/designs/{design.id}", headers=_match(design))))
+
+
+def undelete(id: str) -> Exchange[Design]:
+    """Return a deleted design to the lists, with all its revisions; return it."""
+    return answered(Design, Request("POST", f"{BASE}/designs/{id}/restore"))
 
 
 def labels(id: str) -> Exchange[Labels]:

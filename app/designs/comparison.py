@@ -8,8 +8,11 @@ from typing import TypeVar
 
 from sqlalchemy.orm import Session
 
+from app.catalogue.catalogues import Catalogues
 from app.designs import repository
+from app.designs.compared_results import compared_results
 from app.designs.differences import differing, differing_texts, leaves
+from app.designs.document import WORKSHEET
 from app.designs.schemas.comparison import Comparison, Side, VerdictChange, VerdictOf
 from app.plain import Json, JsonObject
 from app.presentation import numbers
@@ -48,7 +51,7 @@ class Pair:
         return old, repository.revision(session, other, number)
 
 
-def compare(session: Session, pair: Pair) -> Comparison:
+def compare(session: Session, pair: Pair, catalogues: Catalogues) -> Comparison:
     """Return the differences between the two revisions.
 
     Raises
@@ -61,6 +64,7 @@ def compare(session: Session, pair: Pair) -> Comparison:
     return Comparison(
         old=_side(old),
         new=_side(new),
+        table=compared_results(session, old, new, catalogues),
         parameters=differing_texts(one.parameters, other.parameters),
         versions=differing_texts(one.versions, other.versions),
         relations=differing_texts(one.relations, other.relations),
@@ -97,6 +101,7 @@ class _Parts:
             relations={
                 **_named({name: _texts(step.get("relations", {})) for name, step in steps.items()}),
                 **_named({name: _texts(model.relations) for name, model in models.items()}),
+                **({WORKSHEET: lines} if (lines := row.document.get(WORKSHEET)) else {}),
             },
             inputs=_named({name: step["inputs"] for name, step in steps.items()}),
             outputs=_named({name: _outputs(step) for name, step in calculated.items()}),

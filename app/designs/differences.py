@@ -125,7 +125,7 @@ def _difference(other: JsonObject, before: Numbers, after: Numbers) -> Quantity 
     if before.shape or scale is None or not np.isfinite(step := float(after - before)):
         return None
     if _is_temperature(other):
-        return Quantity(value=step, unit="K")
+        return Quantity(value=step, unit="delta_degC")
     return Quantity(value=step / scale.factor, unit=scale.text)
 
 

@@ -15,6 +15,7 @@ from app.catalogue.team import Snapshot
 from app.designs.analyses import measured_names, measured_unit
 from app.designs.graph import build_graph, read_document, resolved
 from app.designs.network import LIMITS, Block, Cell, Graph
+from app.designs.result_cells import columns_of
 from app.designs.schemas.network import DesignNetwork, NetworkBlock, NetworkName, NetworkRelation
 from app.plain import Raw
 from app.reference import Reference
@@ -54,6 +55,7 @@ def network_of(graph: Graph) -> DesignNetwork:
         blocks=[NetworkBlock(name=name, kind=_kind(graph, name), column=columns[name]) for name in columns],
         relations=list(_relations(graph, columns)),
         names=list(_names(graph)),
+        table=list(map(str, columns_of(graph))),
     )
 
 
@@ -118,7 +120,7 @@ def _names(graph: Graph) -> Iterator[NetworkName]:
             yield _name(name, "parameter", "parameter of the design", kind.unit)
     for block in graph.blocks.values():
         for tail, declared in block.cls.inputs.items():
-            if not isinstance(declared, Choice):
+            if not (isinstance(declared, Choice) or block.is_worksheet):
                 yield _declared(f"{block.name}.{tail}", "input", declared)
         for tail, formula in block.cls.formulas.items():
             yield _declared(f"{block.name}.{tail}", "output", formula)

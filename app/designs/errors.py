@@ -3,7 +3,7 @@
 DesignError
     StaleRevision       the design has changed since the client read it
     NotConverged        a declared iteration did not converge within its limit
-    DesignReleased      a design with a released revision cannot be deleted
+    DesignSigned        a design with a signature cannot be deleted
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ class StaleRevision(DesignError):
         )
 
 
-class DesignReleased(DesignError):
-    """A design with a released revision cannot be deleted."""
+class DesignSigned(DesignError):
+    """A design with a signed revision cannot be deleted."""
 
     def __init__(self, id: str, revision: int) -> None:
         super().__init__(
-            f"revision {revision} of design {id[:80]} was released, so the design cannot be deleted; "
+            f"revision {revision} of design {id[:80]} bears a signature, so the design cannot be deleted; "
             f'archive it instead: POST /api/v1/designs/{id[:80]}/labels {{"archived": true}}'
         )
 

@@ -28,6 +28,7 @@ class DesignFilter:
     state: str | None = None  # state of the newest revision
     tags: tuple[str, ...] = ()  # keys of tags, all of which the design has
     archived: str = "false"  # "true": only archived designs; "any": archived designs too
+    is_deleted: bool = False  # only deleted designs
     template: str | None = None  # template of a step, or CAD model, in the newest revision; see TEMPLATE
 
     def __post_init__(self) -> None:

@@ -8,7 +8,7 @@ from app.calculations import json_values
 from app.designs.analyses import measured_unit
 from app.designs.engine.calculation import Calculation
 from app.designs.network import Block, Cell, Solid, SolidAnalysis
-from app.designs.roundings import rounded_value
+from app.designs.result_cells import rounded_value
 from app.plain import JsonObject
 from app.reference import Reference
 from templates.core.errors import FaultyText

@@ -23,12 +23,10 @@ _IS_WITHDRAWN = (
     .exists()
 )
 
-_EVER_RELEASED = select(func.max(ApprovalRow.revision)).where(
-    ApprovalRow.design_id == bindparam("design"), ApprovalRow.step == "released"
-)
-EVER_RELEASED = Statement(_EVER_RELEASED, "design")
-"""Selects the newest revision of a `design` that was ever released, even if withdrawn since; or null."""
-OF_NEWEST_RELEASED = _EVER_RELEASED.where(~_IS_WITHDRAWN)
+_EVER_SIGNED = select(func.max(ApprovalRow.revision)).where(ApprovalRow.design_id == bindparam("design"))
+EVER_SIGNED = Statement(_EVER_SIGNED, "design")
+"""Selects the newest revision of a `design` that has a signature, even if withdrawn since; or null."""
+OF_NEWEST_RELEASED = _EVER_SIGNED.where(ApprovalRow.step == "released", ~_IS_WITHDRAWN)
 NEWEST_RELEASED = Statement(OF_NEWEST_RELEASED, "design")
 """Selects the newest released revision of a `design` that is not withdrawn; or null."""
 

@@ -13,9 +13,9 @@ from sqlalchemy.orm import Session, defer
 from sqlalchemy.orm.util import identity_key
 
 from app.designs import statements
-from app.designs.errors import DesignReleased, StaleRevision
+from app.designs.errors import DesignSigned, StaleRevision
 from app.designs.filters import DesignFilter, conditions
-from app.designs.releases import EVER_RELEASED
+from app.designs.releases import EVER_SIGNED
 from app.designs.results import ModelState
 from app.identity.audit import record
 from app.identity.principal import acting
@@ -190,8 +190,14 @@ def newest_number(session: Session, id: str) -> int:
 def designs(
     session: Session, limit: int, cursor: str | None, wanted: DesignFilter | None = None
 ) -> list[DesignRow]:
-    """Return one page of the designs that match a filter, newest first, plus one design if there are more."""
-    query = select(DesignRow).where(DesignRow.deleted.is_(None)).order_by(DesignRow.id.desc())
+    """Return one page of the designs that match a filter, newest first, plus one design if there are more.
+
+    Deleted designs are left out, unless the filter asks for them alone.
+    """
+    is_deleted = (
+        DesignRow.deleted.is_not(None) if wanted and wanted.is_deleted else DesignRow.deleted.is_(None)
+    )
+    query = select(DesignRow).where(is_deleted).order_by(DesignRow.id.desc())
     if wanted is not None:
         query = query.where(*conditions(session, wanted))
     if cursor:
@@ -283,19 +289,37 @@ def fail(session: Session, id: str, number: int, problem: JsonObject) -> None:
 
 
 def delete(session: Session, id: str) -> None:
-    """Remove a design from the lists; its revisions are kept.
+    """Remove a design from the lists; everything of it is kept, so that it can be restored.
 
     Raises
     ------
-    DesignReleased
-        If one of its revisions was released.
+    NotFound
+        If there is no such design, or it is deleted.
+    DesignSigned
+        If one of its revisions has a signature.
     """
     row = locked(session, id)
-    released = EVER_RELEASED.scalar(session, {"design": id})
-    if released is not None:
-        raise DesignReleased(id, released)
+    signed = EVER_SIGNED.scalar(session, {"design": id})
+    if signed is not None:
+        raise DesignSigned(id, signed)
     row.deleted = now()
     record(session, "design.delete", f"designs/{id}", at=row.deleted)
+
+
+def restore(session: Session, id: str) -> None:
+    """Return a deleted design to the lists; a design that is not deleted stays unchanged.
+
+    Raises
+    ------
+    NotFound
+        If there never was such a design.
+    """
+    row = session.get(DesignRow, id, with_for_update=True)
+    if row is None:
+        raise NotFound(f"there is no design {id[:80]!r}, deleted or not")
+    if row.deleted is not None:
+        row.deleted = None
+        record(session, "design.restore", f"designs/{id}")
 
 
 def newest_good(session: Session, id: str, model: str, until: int) -> RevisionModelRow | None:

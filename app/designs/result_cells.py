@@ -1,6 +1,6 @@
-"""The cells of the table of results: which values it shows, and their values for one row.
+"""Values that a revision stores beside its steps: the cells of the table of results, and rounded values.
 
-A revision stores the cells of the design and of each variant; `result_table` assembles the table.
+The cells are stored for the design and for each variant; `result_table` assembles the table.
 """
 
 from __future__ import annotations
@@ -12,18 +12,37 @@ from typing import NotRequired, TypedDict
 import numpy as np
 
 from app.designs.analyses import is_table
+from app.designs.engine.calculate import calculated
 from app.designs.engine.calculation import Calculation
-from app.designs.network import Block, Graph, subjects
+from app.designs.network import Block, Cell, Graph, subjects
 from app.reference import ItemReference, Reference
 from templates.core.errors import FaultyText
 from templates.core.language.spec import Choice
 from templates.core.units.quantity import read_any
-from templates.core.units.units import unit
+from templates.core.units.units import Unit, unit
 
 TYPED_DIGITS = 12  # of a value that the user typed, which conversions of units may change in the last digits
 ARRAY = "it is a list or a curve; choose one of its items, such as `[1]`, or a single value"
 SINGLE = "it is not a list; omit the number of the item"
 PENDING = "it is not calculated"
+SHOWN_DIGITS = 12  # of a shown value, as many as a model's parameters have
+ROUNDED = "rounded"
+
+
+class ShownQuantity(TypedDict):
+    """A quantity as a revision stores it; its value is a number or a list of any depth."""
+
+    value: object
+    unit: str
+
+
+class RoundedValue(TypedDict):
+    """A rounded value as a revision stores it."""
+
+    name: str
+    rule: str
+    calculated: ShownQuantity
+    chosen: ShownQuantity
 
 
 class TableCell(TypedDict):
@@ -130,3 +149,59 @@ def _unit_of(graph: Graph, reference: Reference) -> str:
         return graph.kinds[reference.block].unit if cell.relations else read_any(cell.raw).unit
     except FaultyText:  # a list with relations
         return graph.kinds[reference.block].unit
+
+
+def rounded(calculation: Calculation) -> list[RoundedValue]:
+    """Return every known rounded value by its name: the rule, the calculated and the chosen value.
+
+    A value that only names a rounded one, such as `= pin`, is listed as well.
+    """
+    return [
+        row for cell in calculation.graph.cells() if (row := rounded_value(calculation, cell)) is not None
+    ]
+
+
+def as_member(calculation: Calculation) -> dict[str, list[RoundedValue]]:
+    """Return the rounded values as the member `rounded` of stored results; empty if there are none."""
+    rows = rounded(calculation)
+    return {ROUNDED: rows} if rows else {}
+
+
+def rounded_value(calculation: Calculation, cell: Cell) -> RoundedValue | None:
+    """Return the rule, calculated and chosen value of a cell; None if it is pending or not rounded."""
+    source = _source(calculation.graph, cell)
+    column = calculation.values.get(source.name) if source is not None else None
+    if source is None or column is None or column.is_row:
+        return None
+    scale = source.roundings[0].scale
+    return {
+        "name": cell.name,
+        "rule": ", ".join(dict.fromkeys(rounding.words for rounding in source.roundings)),
+        "calculated": quantity(calculated(calculation, source).value, scale),
+        "chosen": quantity(column.value, scale),
+    }
+
+
+def _source(graph: Graph, cell: Cell) -> Cell | None:
+    """Return the cell whose rounding a cell shows: itself, or the cell that it only names."""
+    while not cell.roundings:
+        names = [relation.only_name for relation in cell.relations]
+        if len(names) != 1 or names[0] is None or isinstance(cell.raw, list):
+            return None
+        source = graph.node(cell.uses[names[0]])
+        if not isinstance(source, Cell):
+            return None
+        cell = source
+    return cell
+
+
+def quantity(si: object, scale: Unit) -> ShownQuantity:
+    """Return a value [SI] in a unit, with the digits that are shown."""
+    return {
+        "value": _plain(np.asarray(scale.from_si(np.asarray(si, dtype=float))).tolist()),
+        "unit": scale.text,
+    }
+
+
+def _plain(value: object) -> object:
+    return [_plain(item) for item in value] if isinstance(value, list) else float(f"{value:.{SHOWN_DIGITS}g}")

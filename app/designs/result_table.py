@@ -1,4 +1,7 @@
-"""The table of results of a design and its variants, as pages, reports, files and the client show it."""
+"""The table of results of a design and its variants, as pages, reports, files and the client show it.
+
+`table` makes it for one revision, `compared` for two revisions.
+"""
 
 from __future__ import annotations
 
@@ -52,14 +55,57 @@ def table(
         varied = frozenset(chain.from_iterable(row.values for row in rows))
         differing = _different(names, [stored.get(row.name, {}) for row in rows])
         names = [name for name in differing if name not in varied][:MOST_DEFAULT]
-    words = headings(names, graph)
-    columns = [_column(name, words[name], _unit(name, stored.values())) for name in names]
-    shown = [_row(row, stored.get(row.name, {}), names) for row in rows]
-    if with_changes:
-        shown = [one.model_copy(update={"changes": _changes(shown[0], one)}) for one in shown]
+    firsts = {row.name: rows[0].name for row in rows} if with_changes else {}
+    return _assembled(rows, stored, headings(names, graph), governing, firsts)
+
+
+def compared(
+    rows: Sequence[VariantResult],
+    stored: Mapping[str, Cells],
+    graphs: Sequence[Graph],
+    governing: GoverningVariant | None,
+    firsts: Mapping[str, str],
+) -> ResultTable:
+    """Return the table of two revisions: the columns of both, without blocks whose results are equal.
+
+    Parameters
+    ----------
+    rows, stored, governing
+        As for `table`; the names of the rows differ between the revisions.
+    graphs
+        The networks of the revisions; the first decides the order and the headings.
+    firsts
+        For a row, the row from which it states its change.
+    """
+    words: dict[str, str] = {}
+    for graph in graphs:
+        words = {**headings(map(str, columns_of(graph)), graph), **words}
+    names = [str(name) for name in dict.fromkeys(chain.from_iterable(map(columns_of, graphs)))]
+    differing = _different(names, [stored.get(row.name, {}) for row in rows])[:MOST_DEFAULT]
+    return _assembled(rows, stored, {name: words[name] for name in differing}, governing, firsts)
+
+
+def _assembled(
+    rows: Sequence[VariantResult],
+    stored: Mapping[str, Cells],
+    words: Mapping[str, str],
+    governing: GoverningVariant | None,
+    firsts: Mapping[str, str],
+) -> ResultTable:
+    columns = [_column(name, text, _unit(name, stored.values())) for name, text in words.items()]
+    shown = {row.name: _row(row, stored.get(row.name, {}), list(words)) for row in rows}
+    changes = {name: _changes(shown[first], shown[name]) for name, first in firsts.items()}
     worst = _worst(rows, governing)
-    shown = [one.model_copy(update={"governs": True}) if one.name in worst else one for one in shown]
-    return ResultTable(columns=columns, rows=shown, governing=_sentence(rows, worst, governing))
+    marked = [
+        row.model_copy(
+            update={
+                **({"changes": changes[row.name]} if row.name in changes else {}),
+                **({"governs": True} if row.name in worst else {}),
+            }
+        )
+        for row in shown.values()
+    ]
+    return ResultTable(columns=columns, rows=marked, governing=_sentence(rows, worst, governing))
 
 
 def _column(name: str, words: str, unit: str | None) -> ResultColumn:

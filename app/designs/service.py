@@ -225,15 +225,33 @@ class Designs:
         named = {**document, "name": name or f"{document['name'][:190]} (copy)"}
         return self.create(named, f"copy of {id}, revision {number}", once, "design.copy", document)
 
-    def delete(self, id: str) -> None:
-        """Delete a design from the lists; its revisions are kept.
+    def delete(self, id: str, expected: str | None) -> None:
+        """Delete a design from the lists; it can be restored.
 
         Raises
         ------
-        DesignReleased
-            If one of its revisions was released.
+        StaleRevision
+            If `expected` (an If-Match) is not the newest revision.
+        DesignSigned
+            If one of its revisions has a signature.
         """
-        self.database.write(lambda session: repository.delete(session, id))
+
+        def unit(session: Session) -> None:
+            _require_match(expected, repository.locked(session, id).head)
+            repository.delete(session, id)
+
+        self.database.write(unit)
+
+    def undelete(self, id: str) -> Design:
+        """Return a deleted design to the lists; return it at its newest revision.
+
+        Raises
+        ------
+        NotFound
+            If there never was such a design.
+        """
+        self.database.write(lambda session: repository.restore(session, id))
+        return self.show(id)
 
     def proposals(self, id: str) -> list[Proposal]:
         """Return relations that are proposed for unset model parameters."""

@@ -81,10 +81,10 @@ TABLE: dict[type[Exception], Kind] = {
     templates.TemplateError: Kind("refused", 422, "The calculation refuses these values", "see `detail`"),
     storage.NotFound: Kind("not-found", 404, "Not found", "GET the list to see what exists"),
     designs.StaleRevision: Kind("stale-revision", 412, "The design has changed", "read it again, then retry"),
-    designs.DesignReleased: Kind(
-        "design-released",
+    designs.DesignSigned: Kind(
+        "design-signed",
         409,
-        "A design with a released revision cannot be deleted",
+        "A design with a signed revision cannot be deleted",
         "archive the design instead",
     ),
     approvals.Unacknowledged: Kind(

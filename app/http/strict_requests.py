@@ -168,6 +168,8 @@ class StrictRoute(APIRoute):
         own = {"response_model_exclude_unset": True, "generate_unique_id_function": operation_id}
         super().__init__(path, endpoint, **{**options, **own})
         self.takes = frozenset(self.methods or ())
+        reads_etag = any(one.alias.lower() == "if-match" for one in self.dependant.header_params)
+        self.needs_etag = bool(self.takes & {"PATCH", "PUT"}) or ("DELETE" in self.takes and reads_etag)
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[object, None, Response]]:
         """Return FastAPI's handler, preceded by the checks."""
@@ -193,7 +195,7 @@ class StrictRoute(APIRoute):
         await _refreshed(request)
         refuse_nul_in_address(request)
         is_patch = "PATCH" in self.takes
-        if (is_patch or "PUT" in self.takes) and "if-match" not in request.headers:
+        if self.needs_etag and "if-match" not in request.headers:
             raise PreconditionRequired('send If-Match with the ETag of what you read, such as "3"')
         if self.body_field is not None:
             check_type(request, PATCH_TYPES if is_patch else JSON_TYPES)

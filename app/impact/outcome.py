@@ -29,7 +29,7 @@ class JudgedCriterion:
     @classmethod
     def in_row(cls, verdict: Verdict, criterion: Criterion, margin: float) -> JudgedCriterion:
         """Return the verdict on a criterion in one row of a batch; a margin [SI] of NaN is unknown."""
-        scale = "K" if criterion.is_temperature else criterion.unit
+        scale = "delta_degC" if criterion.is_temperature else criterion.unit
         return cls(verdict, scale, _finite(margin / unit(scale).factor))
 
 

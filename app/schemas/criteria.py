@@ -45,7 +45,7 @@ class Criterion(Answer):
         None, description="utilisation; above 1 the criterion is not met; null for a temperature"
     )
     margin: Quantity | None = Field(
-        None, description="margin, positive on the safe side; for a temperature in K"
+        None, description="margin, positive on the safe side; for a temperature a difference"
     )
     needs: float | None = Field(None, description="the relative error that would allow a verdict")
     give: list[str] = Field([], description="what is missing")

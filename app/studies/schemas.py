@@ -174,6 +174,7 @@ class Study(Units):
     varied: list[str]
     outputs: list[str]
     criteria: list[str]
+    words: dict[str, str] = Field({}, description="headings of places and outputs; empty in older studies")
     levels: dict[str, str] = Field(description="levels of the exploration, by step")
     set_aside: SetAside = {}
     objectives: dict[str, Literal["minimise", "maximise"]] = Field({}, description="objectives by output")

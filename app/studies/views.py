@@ -49,6 +49,7 @@ def study(session: Session, row: Row) -> Study:
         "outputs": plan.outputs,
         "criteria": plan.criteria,
         "units": plan.units,
+        "words": plan.words,
         "levels": _named(plan.levels),
         "set_aside": plan.set_aside,
         "objectives": {name: way for way in ("minimise", "maximise") for name in row.body.get(way, ())},

@@ -98,7 +98,7 @@ def assert_equal_numbers(judgement, column, row):
     if judgement.utilisation is not None:
         np.testing.assert_allclose(column.utilisation[row], judgement.utilisation, rtol=1e-12)
     if judgement.margin is not None:
-        factor = 1.0 if judgement.margin_unit == "K" else scale.factor
+        factor = 1.0 if judgement.margin_unit == "delta_degC" else scale.factor
         size = 1e-12 * (
             abs(column.value[row]) + abs(column.limit[row])
         )  # the difference of two large numbers

@@ -223,7 +223,7 @@ class TestConditions:
 
     def test_a_revision_of_a_deleted_design_keeps_its_report(self, http):
         design = created(http, {"name": "gone", "parameters": {"a": "1 mm"}})
-        http.delete(f"{DESIGNS}/{design['id']}")
+        http.delete(f"{DESIGNS}/{design['id']}", headers={"If-Match": "*"})
         problem(http.get(f"{DESIGNS}/{design['id']}/report"), 404, "not-found")
         assert "gone" in on_screen(http, design, number=1).text
 

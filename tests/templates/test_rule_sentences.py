@@ -102,6 +102,17 @@ def test_every_rule_that_warns_is_violated_once():
     assert sorted(missing) == []
 
 
+@pytest.mark.parametrize(("peak", "warned"), [("60 bar", False), ("5 bar", True)])
+def test_a_point_that_another_rule_refuses_is_not_warned_about(peak, warned):
+    cls = newest("engine")
+    raw = {**cls.example, "compression_ratio": [10, 0.5], "combustion_pressure": peak}
+    said = [w.detail for w in evaluate(cls, raw).warnings if w.code == "pressure_falls"]
+    assert bool(said) == warned
+    for one in said:
+        assert assert_true_of_its_numbers(one)
+        assert "worst of 1 among 2 values" in one
+
+
 def test_a_crank_without_masses_is_said_to_have_none():
     cls = newest("engine")
     raw = {name: value for name, value in {**cls.example, **MASSLESS}.items() if value is not None}

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path, Query
 
-from app.api.dependencies import TheDatabase, Units
+from app.api.dependencies import TheCatalogues, TheDatabase, Units
 from app.designs.comparison import Pair, compare
 from app.designs.schemas.comparison import Comparison
 from app.http.strict_requests import StrictRoute
@@ -34,6 +34,7 @@ Other = Annotated[
 def compare_revisions(
     id: Id,
     database: TheDatabase,
+    catalogues: TheCatalogues,
     revision: Number = None,
     number: With = None,
     design: Other = None,
@@ -41,4 +42,4 @@ def compare_revisions(
 ) -> Comparison:
     """Compare a revision of this design with another revision of it, or with one of another design."""
     with database.read() as session:
-        return compare(session, Pair(id, revision, design or None, number)).in_units(units)
+        return compare(session, Pair(id, revision, design or None, number), catalogues).in_units(units)

@@ -138,6 +138,7 @@ Archived = Annotated[
     Literal["false", "true", "any"],
     Query(description="`false`: without archived designs; `true`: only archived designs; `any`: both"),
 ]
+Deleted = Annotated[bool, Query(description="only deleted designs, which can be restored")]
 UsedTemplate = Annotated[
     str | None,
     Query(
@@ -181,10 +182,11 @@ def list_designs(
     tag: WithTags = [],  # noqa: B006 - FastAPI copies it
     archived: Archived = "false",
     template: UsedTemplate = None,
+    deleted: Deleted = False,
 ) -> DesignList:
     """Return designs, newest first: all, or those that match all filters."""
     tags = tuple(dict.fromkeys(map(key_of, tag)))
-    wanted = DesignFilter(name, state, tags, archived, template)
+    wanted = DesignFilter(name, state, tags, archived, deleted, template)
     with database.read() as session:
         rows = repository.designs(session, limit, cursor, wanted)
         ids = [row.id for row in rows]
@@ -239,10 +241,16 @@ async def _saved(
 
 
 @router.delete("/{id}", status_code=204, responses=refusals(404, 409))
-def delete_design(id: Id, designs: TheDesigns) -> Response:
-    """Delete a design from the lists; its revisions are kept."""
-    designs.delete(id)
+def delete_design(id: Id, designs: TheDesigns, if_match: IfMatch = None) -> Response:
+    """Delete a design from the lists; it can be restored. A design with a signature cannot be deleted."""
+    designs.delete(id, if_match)
     return Response(status_code=204)
+
+
+@router.post("/{id}/restore", response_model=Design, responses=refusals(404))
+def restore_deleted_design(id: Id, designs: TheDesigns) -> Response:
+    """Return a deleted design to the lists, with all its revisions."""
+    return shown(designs.undelete(id))
 
 
 @router.post(

@@ -7,6 +7,7 @@ from typing import Self
 from pydantic import Field
 
 from app.designs.schemas.designs import State
+from app.designs.schemas.result_table import ResultTable
 from app.presentation.units import System, shown_value
 from app.schemas.answers import Answer, Measured, Quantity, Value
 
@@ -85,6 +86,10 @@ class Comparison(Answer):
 
     old: Side
     new: Side
+    table: ResultTable = Field(
+        description="the main results of both revisions and their variants, the older one first, in which "
+        "a row of the newer one states its change; without blocks whose results are equal"
+    )
     parameters: list[TextChange] = Field(description="parameters of the design, as typed")
     versions: list[TextChange] = Field(description="templates and models by step: version, code, level")
     relations: list[TextChange] = Field(description="relations of inputs and model parameters")

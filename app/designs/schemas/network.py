@@ -49,3 +49,6 @@ class DesignNetwork(Answer):
     blocks: list[NetworkBlock] = Field(description="in the order of calculation")
     relations: list[NetworkRelation]
     names: list[NetworkName]
+    table: list[str] = Field(
+        description="values that the table of results shows: the chosen columns, else the main results"
+    )

@@ -19,8 +19,8 @@ from app.designs.engine.calculation import Calculation
 from app.designs.errors import DesignError
 from app.designs.graph import raise_if
 from app.designs.questions import settled
+from app.designs.result_cells import as_member
 from app.designs.results import Outcome
-from app.designs.roundings import as_member
 from app.designs.schemas.variants import VariantDetail
 from app.designs.variants.names import BASE
 from app.designs.variants.together import Available, together

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from sqlalchemy.orm import Session
 
@@ -11,9 +11,9 @@ from app.catalogue.catalogues import Catalogues
 from app.designs import repository, tolerances
 from app.designs.document import Document
 from app.designs.graph import Graph, build_graph
+from app.designs.result_cells import ROUNDED
 from app.designs.result_table import table
 from app.designs.results import TABLE
-from app.designs.roundings import ROUNDED
 from app.designs.schemas.result_table import ResultTable
 from app.designs.schemas.variants import (
     GoverningVariant,
@@ -50,15 +50,15 @@ def variants(
     """
     design = repository.design(session, id) if number is None else None
     row = repository.lean(session, id, design.head if design else number or 0)
-    table = _Table.of(session, row)
-    _require_outputs(outputs, table.stored)
+    stored = _Revision.of(session, row)
+    _require_outputs(outputs, stored.results)
     names = sorted(row.document.get("variants", {}), key=natural)
-    results = [table.row(name, outputs) for name in names]
-    base = table.row(BASE, outputs) if BASE in table.stored else None
+    results = [stored.row(name, outputs) for name in names]
+    base = stored.row(BASE, outputs) if BASE in stored.results else None
     everybody = [*([base] if base else []), *results]
-    worst = _governing((row.results or {}).get("criteria", ())) if table.stored else {}
+    worst = _governing(row) if stored.results else {}
     parts: JsonObject = {"base": base, "by_criterion": worst or None, "problem": row.problem}
-    governing = next((one for one in worst.values() if one.verdict != "not_checked"), None)
+    governing = _first_checked(worst)
     document = Document.model_validate(row.document)
     graph, _ = build_graph(document, catalogues)
     parts |= {"governing": governing, "table": _results(row, everybody, document, graph, governing)}
@@ -93,17 +93,17 @@ def _require_outputs(outputs: Collection[str], stored: Mapping[str, JsonObject])
 
 
 @dataclass(frozen=True)
-class _Table:
+class _Revision:
     """One revision with the stored data of its variants."""
 
     revision: RevisionRow
-    stored: Mapping[str, JsonObject]  # results by variant; those of the design are under `base`
+    results: Mapping[str, JsonObject]  # by variant; those of the design are under `base`
     models: Mapping[str, list[RevisionModelRow]]  # models by variant
     builds: Mapping[str, BuildRow]
     artifacts: Mapping[str, Mapping[str, str]]  # hashes of files by build and kind
 
     @classmethod
-    def of(cls, session: Session, row: RevisionRow) -> _Table:
+    def of(cls, session: Session, row: RevisionRow) -> _Revision:
         models: dict[str, list[RevisionModelRow]] = {BASE: list(row.models)}
         for model in row.variant_models:
             models.setdefault(model.variant or BASE, []).append(model)
@@ -114,7 +114,7 @@ class _Table:
 
     def row(self, name: str, outputs: Collection[str]) -> VariantResult:
         """Return one variant, without members that do not apply."""
-        result = self.stored.get(name, {})
+        result = self.results.get(name, {})
         models = {
             model.name.removeprefix(f"{name}."): self._model(model, result.get("failures", {}))
             for model in self.models.get(name, ())
@@ -170,13 +170,35 @@ def _chosen(result: JsonObject, outputs: Collection[str]) -> Iterator[tuple[str,
     yield from ((name, stored[name]) for name in outputs if name in stored)
 
 
-def _governing(criteria: Iterable[JsonObject]) -> dict[str, GoverningVariant]:
+def _governing(row: RevisionRow) -> dict[str, GoverningVariant]:
     """Return the worst variant of each criterion, worst criterion first, as the revision stores them."""
     worst: dict[str, GoverningVariant] = {}
-    for one in criteria:
+    for one in (row.results or {}).get("criteria", ()):
         used = one.get("utilisation")
         more = {} if used is None else {"utilisation": used}
         worst[one["name"]] = GoverningVariant(
-            variant=one["where"][VARIANT], criterion=one["name"], verdict=one["verdict"], **more
+            variant=(one.get("where") or {}).get(VARIANT, BASE),
+            criterion=one["name"],
+            verdict=one["verdict"],
+            **more,
         )
     return worst
+
+
+def _first_checked(worst: Mapping[str, GoverningVariant]) -> GoverningVariant | None:
+    return next((one for one in worst.values() if one.verdict != "not_checked"), None)
+
+
+def rows_of(session: Session, row: RevisionRow) -> tuple[list[VariantResult], GoverningVariant | None]:
+    """Return the results of a revision and its variants, the design itself first, and the one that governs.
+
+    The results of a design without variants are those of the design itself. No row governs if the verdict
+    names no criterion, because a criterion waits for its limit.
+    """
+    names = [BASE, *sorted(row.document.get("variants", {}), key=natural)]
+    stored = _Revision.of(session, row)
+    if not stored.results:
+        stored = replace(stored, results={BASE: row.results or {}})
+    is_decided = ((row.results or {}).get("verdict") or {}).get("governing") is not None
+    governing = _first_checked(_governing(row)) if is_decided else None
+    return [stored.row(name, ()) for name in names], governing

@@ -10,7 +10,9 @@ from fastapi import APIRouter, Query, Request, Response
 
 from app.designs.routes.comparison import compare_revisions
 from app.designs.routes.designs import list_designs
+from app.designs.schemas.comparison import Comparison, ValueDifference
 from app.designs.schemas.designs import Design
+from app.presentation.result_lines import result_lines
 from app.web.shared.paths import Id, Text
 from app.web.shared.responses import show, units_of
 from app.web.shared.services import PageServices, Refused, ThePageServices
@@ -55,11 +57,17 @@ async def compare_page(request: Request, services: PageServices, id: str, asked:
         raise Refused.because(MISSING, "the design to compare with does not exist; choose another one")
     numbers = asked.numbers(id)
     comparison = await services.run(
-        compare_revisions, id, services.database, *numbers, asked.design or None, units_of(request)
+        compare_revisions,
+        id,
+        services.database,
+        services.catalogues,
+        *numbers,
+        asked.design or None,
+        units_of(request),
     )
     listed = (await services.run(list_designs, services.database, limit=200)).items
     others = {item.id: item.name for item in listed} | {design.id: design.name, other.id: other.name}
-    groups = [(name, getattr(comparison, name)) for name in GROUPS]
+    groups = [(name, _unlisted(getattr(comparison, name), name, comparison)) for name in GROUPS]
     texts = [(name, getattr(comparison, name)) for name in TEXTS]
     return show(
         request,
@@ -68,12 +76,28 @@ async def compare_page(request: Request, services: PageServices, id: str, asked:
         other=other,
         others=others,
         comparison=comparison,
+        results=result_lines(comparison.table),
         groups=groups,
         texts=texts,
-        is_equal=not any([*(items for _, items in (*groups, *texts)), comparison.criteria]),
+        is_equal=not _differs(comparison),
         numbers_old=_numbers(design.revision, comparison.old.revision),
         numbers_new=_numbers(other.revision, comparison.new.revision),
     )
+
+
+def _differs(comparison: Comparison) -> bool:
+    return any(getattr(comparison, name) for name in (*GROUPS, *TEXTS, "criteria"))
+
+
+def _unlisted(items: list[ValueDifference], group: str, comparison: Comparison) -> list[ValueDifference]:
+    """Return differences that the table of results does not show.
+
+    Inputs are listed in any case; with variants, the list is about the design itself.
+    """
+    if group not in ("outputs", "measurements") or len(comparison.table.rows) > 2:
+        return items
+    shown = {column.name for column in comparison.table.columns}
+    return [item for item in items if item.name not in shown]
 
 
 async def _other(services: PageServices, design: Design, id: str) -> Design | None:

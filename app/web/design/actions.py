@@ -24,7 +24,7 @@ from app.web.design.page import design_page
 from app.web.gallery.gallery import GALLERY
 from app.web.new_step.routes import NewStep, address, beside, new_step, step_page, versioned
 from app.web.shared.blocks import Refusal
-from app.web.shared.forms import Patch, fields, forms_only, inner, kept, patch_of
+from app.web.shared.forms import Patch, fields, forms_only, inner, kept, lines_of, patch_of
 from app.web.shared.paths import Id, Number
 from app.web.shared.responses import go
 from app.web.shared.services import PageServices, Refused, ThePageServices
@@ -101,7 +101,7 @@ async def save(id: Id, request: Request, services: ThePageServices) -> Response:
     try:
         if based != str(design.revision):
             raise Refused.because(STALE, f"revision {design.revision} was saved in the meantime")
-        await services.change(id, based, patch, typed.get("note", ""))
+        await services.change(id, based, {**patch, **lines_of(typed)}, typed.get("note", ""))
     except Refused as refused:
         return await _again(request, services, id, typed, refused)
     return go(f"/designs/{id}")
@@ -170,10 +170,18 @@ async def copy(id: Id, services: ThePageServices) -> Response:
 
 
 @router.post("/designs/{id}/delete")
-async def delete(id: Id, services: ThePageServices) -> Response:
-    """Remove a design from the lists."""
-    await services.run(services.designs.delete, id)
+async def delete(id: Id, request: Request, services: ThePageServices) -> Response:
+    """Remove a design from the lists, if it is as the user saw it."""
+    seen = (await fields(request)).get("revision", "")
+    await services.run(services.designs.delete, id, f'"{seen}"')
     return go("/#designs")
+
+
+@router.post("/designs/{id}/undelete")
+async def undelete(id: Id, services: ThePageServices) -> Response:
+    """Return a deleted design to the lists, and show it."""
+    await services.run(services.designs.undelete, id)
+    return go(f"/designs/{id}")
 
 
 @router.post("/designs/{id}/revisions/{number}/restore")

@@ -35,6 +35,7 @@ async def step(id: Id, request: Request, services: ThePageServices, name: Text =
 @router.get("/designs/{id}/auto-map")
 @router.get("/designs/{id}/copy")
 @router.get("/designs/{id}/delete")
+@router.get("/designs/{id}/undelete")
 @router.get("/designs/{id}/rename")
 @router.get("/designs/{id}/variants")
 @router.get("/designs/{id}/table")

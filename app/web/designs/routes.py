@@ -11,6 +11,7 @@ from pydantic import BaseModel
 
 from app.designs.routes.designs import (
     Archived,
+    Deleted,
     InState,
     NamePart,
     UsedTemplate,
@@ -34,6 +35,7 @@ class Filter(BaseModel):
     tag: WithTags = []
     archived: Archived = "false"
     template: UsedTemplate = None
+    deleted: Deleted = False
 
 
 @router.get("/designs")
@@ -46,6 +48,7 @@ async def designs(
     template: Text = "",
     tag: Text = "",
     archived: Text = "",
+    deleted: Text = "",
 ) -> Response:
     """Return the page of designs: all, or those that match the filter."""
     typed = {
@@ -54,6 +57,7 @@ async def designs(
         "template": template.strip(),
         "tag": tag.strip(),
         "archived": archived,
+        "deleted": deleted,
     }
     wanted = {key: text for key, text in typed.items() if text}  # a form sends empty fields too
     filtered = services.read(Filter, {**wanted, **({"tag": [wanted["tag"]]} if tag.strip() else {})})

@@ -33,12 +33,17 @@ export function isOf(fault, control) {
   return fault === name || (isOption && (fault === `steps.${name}` || fault.startsWith(`${name}.`)));
 }
 
+export const WORKSHEET = "worksheet"; // the control with the lines of the design
 const LIMITS = "limits."; // prefix in the name of a limit's control
 
 // Return the merge patch of a design for the changed fields: { "film.radial_load": "25 kN" } → { steps: … }.
 export function patchOf(changed, models) {
   const patch = {};
   for (const [name, text] of Object.entries(changed)) {
+    if (name === WORKSHEET) {
+      patch[name] = text.trim() === "" ? null : text;
+      continue;
+    }
     const [, block, kind, tail] = name.match(/^([^.@]*)([.@])(.*)$/s);
     const value = text.trim() === "" ? null : valueOf(text);
     if (kind === "@" && tail.startsWith(LIMITS)) inside(patch, "steps", block, "limits")[tail.slice(LIMITS.length)] = value;

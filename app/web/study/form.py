@@ -12,7 +12,7 @@ from pydantic import JsonValue
 from app.designs.preview import PreviewRequest
 from app.designs.routes.variants import variants_of
 from app.designs.schemas.designs import Design, RevisionWorksheet
-from app.designs.schemas.network import NetworkName
+from app.designs.schemas.network import DesignNetwork, NetworkName
 from app.designs.variants.names import BASE, natural
 from app.presentation.input_text import text_of, value_of
 from app.reference import Reference
@@ -163,6 +163,7 @@ async def study_form(
     )[0]
     places, named = varied(design, network), [*outputs(network), *measured(network)]
     aside = set_aside(design, network, places, present(revision, preview))
+    judged = _judged(revision, named)
     bounds = {place.name: suggested(place) for place in (*places, *aside)}
     return show(
         request,
@@ -176,7 +177,8 @@ async def study_form(
         aside=aside,
         bounds=bounds,
         outputs=named,
-        judged=_judged(revision, named),
+        judged=judged,
+        listed_first=judged | _main_results(revision, network),
         grouped=_by_step(named),
         criteria=[(one.name, one.require, has_limit(one)) for one in revision.criteria or ()],
         methods=METHODS,
@@ -202,6 +204,19 @@ async def _governing(services: PageServices, design: Design) -> str:
 def has_limit(criterion: Criterion) -> bool:
     """Return whether a criterion is checked against a number, given by the user or in its rule."""
     return criterion.verdict != "not_checked" and criterion.limit is not None
+
+
+def _main_results(revision: RevisionWorksheet, network: DesignNetwork) -> set[str]:
+    """Return the outputs in the table of results that are single numbers; the form lists them first.
+
+    They are not ticked, because an output may need a more expensive level than the judged ones.
+    """
+    outputs = {
+        f"{step}.{name}": output.value
+        for step, result in revision.steps.items()
+        for name, output in result.outputs.items()
+    }
+    return {name for name in network.table if isinstance(outputs.get(name), float | int)}
 
 
 def _judged(revision: RevisionWorksheet, named: list[NetworkName]) -> set[str]:

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from urllib.parse import urlencode
 
 from fastapi import Request, Response
 from pydantic import BaseModel
 
+from app.designs.schemas.result_table import ResultColumn, ResultRow, ResultTable
 from app.http.pages import Cursor
 from app.presentation import numbers
+from app.presentation.result_lines import result_lines
 from app.presentation.units import System
 from app.reference import Reference
 from app.schemas.criteria import Criterion
 from app.studies.routes.studies import Fits, Sort, list_rows, list_studies, show_study
-from app.studies.schemas import Best, Index, Study
+from app.studies.schemas import Best, Index, Study, StudyRow
 from app.web.shared.responses import show, units_of
 from app.web.shared.services import PageServices, Refused
 
@@ -43,12 +47,17 @@ async def study_page(
         list_rows, id, services.studies, None, wanted.where, wanted.sort, SHOWN, wanted.cursor, units
     )
     criteria = await _criteria(services, study, units)
+    best = _best(study)
     return show(
         request,
         "study/study.html",
         study=study,
         design=design,
         rows=rows,
+        listed=result_lines(_of_rows(study, rows.items)),
+        found=result_lines(_of_best(study, best)),
+        marks={str(row.row): "best" if len(best) == 1 else "front" for row in best},
+        links={name: _link(name, sort, where) for name in (*study.varied, *study.outputs)},
         names=[*study.varied, *study.outputs],
         unfinished=study.state in UNFINISHED,
         indices=_indices(study),
@@ -59,6 +68,54 @@ async def study_page(
         where=where,
         estimate=study.estimate.seconds,
     )
+
+
+def _best(study: Study) -> list[Best]:
+    """Return the best row, or the rows of the front; empty without an objective."""
+    if study.result is None:
+        return []
+    return [study.result.best] if study.result.best else study.result.front or []
+
+
+def _of_rows(study: Study, rows: Sequence[StudyRow]) -> ResultTable:
+    """Return the table of some rows: the varied values, then the outputs."""
+    names = [*study.varied, *study.outputs]
+    shown = [_row(row, [row.values.get(name) for name in names]) for row in rows]
+    return ResultTable(columns=_columns(study, names), rows=shown)
+
+
+def _of_best(study: Study, rows: Sequence[Best]) -> ResultTable:
+    """Return the table of the best row, or of the front: the varied values, then the outputs."""
+    names = [*study.varied, *study.outputs]
+    values = [{name: one.value for name, one in {**row.at, **row.outputs}.items()} for row in rows]
+    shown = [_row(row, [own.get(name) for name in names]) for row, own in zip(rows, values, strict=True)]
+    return ResultTable(columns=_columns(study, names), rows=shown)
+
+
+def _columns(study: Study, names: Sequence[str]) -> list[ResultColumn]:
+    return [
+        ResultColumn(name=name, words=study.words.get(name, name), unit=study.units[name]) for name in names
+    ]
+
+
+def _row(row: StudyRow | Best, values: Sequence[float | None]) -> ResultRow:
+    """Return a row; the criteria that decide its verdict govern it, unless all are met."""
+    decisive = [name for name, one in row.verdicts.items() if one == row.verdict != "met"]
+    reason = row.reason if isinstance(row, StudyRow) else None
+    return ResultRow(
+        name=str(row.row),
+        values=list(values),
+        verdict=row.verdict,
+        error_unknown=bool(row.error_unknown),
+        criterion_words=", ".join(decisive),
+        problem=reason,
+    )
+
+
+def _link(name: str, sort: str, where: str) -> str:
+    """Return the address of the rows sorted by a column; in descending order if they are ascending now."""
+    way = f"-{name}" if sort == name else name
+    return f"?{urlencode({'sort': way, **({'where': where} if where else {})})}"
 
 
 async def _criteria(services: PageServices, study: Study, units: System) -> list[Criterion]:
@@ -173,8 +230,3 @@ def _with_error(value: float | None, error: float | None) -> str:
 
 def _plain(value: float | None) -> str:
     return "–" if value is None else numbers.plain(float(f"{value:.4g}"))
-
-
-def values_of(best: Best) -> list[tuple[str, str]]:
-    """Return the varied values and outputs of a row, as texts."""
-    return [(name, numbers.in_line(quantity)) for name, quantity in {**best.at, **best.outputs}.items()]

@@ -3,6 +3,7 @@ import { call, units } from "../shared/api.js";
 import { plain, unit } from "../shared/numbers.js";
 import { drawParallel } from "./parallel.js";
 import { watched } from "../shared/progress.js";
+import { startTables } from "../shared/result_table.js";
 import { renewed } from "../shared/renewed.js";
 import { axisTitle, drawContour, drawHistogram, drawScatter, drawTornado } from "./study_charts.js";
 
@@ -12,6 +13,7 @@ followJob(document.querySelector("[data-progress]"));
 showResults();
 
 function showResults() {
+  startTables();
   for (const place of document.querySelectorAll("[data-tornado]")) drawTornado(place, JSON.parse(place.dataset.tornado), place.dataset.words);
   startCharts(document.querySelector("[data-charts]"));
 }

@@ -239,7 +239,7 @@ def _numbers(criterion: Criterion, parts: Parts, worst: Worst, estimates: Mappin
         "relative_error": _relative_error(subject, worst) if worst.is_known else None,
         "utilisation": None if is_temperature else _utilisation(criterion, worst),
         "margin": difference / (1.0 if is_temperature else scale.factor),
-        "margin_unit": "K" if is_temperature else criterion.unit,
+        "margin_unit": "delta_degC" if is_temperature else criterion.unit,
         "needs": needs if needs is None or needs <= 1 else None,
         "reason": _reason(criterion, parts, worst, estimates, needs),
     }

@@ -20,6 +20,13 @@ IS = {"<": "is below", "<=": "is not above", ">": "is above", ">=": "is not belo
 DIGITS = 4  # significant digits in a sentence, unless two numbers need more to differ
 _MOST_DIGITS = 17
 _NAME = re.compile(r"(?:[A-Za-z]\w*\.)*([A-Za-z]\w*)")
+_NUMBER = re.compile(r"-?[0-9][0-9.]*(?:[eE][-+]?[0-9]+)?(?: \S+)?")
+_FACTOR = r"[A-Za-zµ°%][A-Za-z_µ°%²³]*(?:\*\*-?[0-9]+)?"
+_TERM = re.compile(
+    r"(?P<number>(?<![\w.])[0-9][0-9.]*(?:[eE][-+]?[0-9]+)?) "
+    rf"(?P<unit>{_FACTOR}(?:[*/](?:{_FACTOR}|\({_FACTOR}(?:\*{_FACTOR})*\)))*)|{_NAME.pattern}"
+)
+"""A number with its unit, or a name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,8 +112,8 @@ class Judgement:
 
     @property
     def has_fixed_limit(self) -> bool:
-        """Return whether the limit is a literal number in the criterion."""
-        return _is_number(self.sides[1])
+        """Return whether the limit follows from a literal number in the criterion."""
+        return self.sides[1].removeprefix("-")[:1].isdigit()
 
     @property
     def misses(self) -> bool:
@@ -174,12 +181,15 @@ def _parts_of(require: str) -> _Parts:
 
 
 def _is_number(side: str) -> bool:
-    return side.removeprefix("-")[:1].isdigit()
+    return bool(_NUMBER.fullmatch(side))
 
 
 def is_model(truth: str | None) -> bool:
-    """Return whether a truth is a described model, such as `rigid film`, and not a level."""
-    return truth is not None and " " in truth
+    """Return whether a truth is a model of the part, such as `rigid film`.
+
+    Other truths are solutions of the same model, such as a level or a finer mesh.
+    """
+    return truth is not None and truth.endswith(" film")
 
 
 def not_judged(judgement: Judgement) -> str:
@@ -195,8 +205,14 @@ def _in_words(text: str) -> str:
 
 
 def _name(text: str) -> str:
-    """Return the labels of names without their steps; a number is returned as written."""
-    return text if _is_number(text) else _NAME.sub(lambda name: name[1].replace("_", " "), text)
+    """Return the labels of names without their steps, and numbers with the printed form of their units."""
+    return text if _is_number(text) else _TERM.sub(_label, text)
+
+
+def _label(term: re.Match[str]) -> str:
+    if term["number"]:
+        return f"{term['number']} {unit_symbol(term['unit'])}"
+    return term[term.lastindex or 0].replace("_", " ")
 
 
 class Side(NamedTuple):

@@ -28,6 +28,10 @@ class Written(Protocol):
     def digest(self) -> str:
         """Return the SHA-256 of the calculating statements, without prose and layout."""
 
+    @property
+    def is_exact(self) -> bool:
+        """Return whether its results have no error of their own, as those of a design's lines."""
+
 
 class Calculation:
     """The values of one calculation and the declarations of its class; `Template` reads and checks inputs."""

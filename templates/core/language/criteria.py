@@ -285,8 +285,12 @@ def _absent(template: Template, formula: Formula[Any], reason: str | None) -> Ab
 def error_of(evaluated: EvaluatedValues, name: str) -> Any:
     """Return the relative error of an output; NaN if it is unknown.
 
-    The error is unknown if the template has no measured errors, or has no levels and no entry for the output.
+    A line of a design defines its result, so it adds no error of its own. Otherwise the error is unknown if
+    the template has no measured errors, or has no levels and no entry for the output.
     """
+    sheet = evaluated.template.sheet
+    if sheet is not None and sheet.is_exact:
+        return 0.0
     error, table = evaluated.errors.get(name), evaluated.measured
     if error is None or table is None or not (evaluated.template.levels or name in table.outputs):
         return float("nan")

@@ -13,7 +13,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from templates.core.arrays import Array
+from templates.core.arrays import Array, Truth
 from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt, unknown_names
 from templates.core.language.admission import outside_published
 from templates.core.language.calculation import Calculation
@@ -438,14 +438,28 @@ def _violated_points(self: Calculation, rule: Requirement, holds: NDArray[np.boo
 
 
 def remarks(self: Calculation) -> Iterator[Notice]:
-    """Yield a warning for every broken rule that only warns, and for every remark of a worksheet."""
+    """Yield a warning for every broken rule that only warns, and for every remark of a worksheet.
+
+    A rule does not warn about points that another rule refuses.
+    """
     for rule in self._remarks:
-        if not np.all(rule.function(self)):
+        if not np.all(_or_refused(self, rule, rule.function(self))):
             for name in rule.names:
                 yield Notice(rule.warning, name, f"{violation(self, rule, name)}; {rule.remedy}")
     for declared, remark in self._readings:
         if declared.attribute in vars(self) and declared.name not in self.ledger.typed:
             yield Notice("turns", declared.name, remark)
+
+
+def _or_refused(self: Calculation, rule: Requirement, holds: Truth) -> Truth:
+    """Return where a rule holds, or a value that it reads belongs to a refused point."""
+    if np.ndim(holds) == 0:
+        return holds
+    beneath = set(rule.uses).union(*(self.depends_on(attribute) for attribute in rule.uses))
+    for mask in self.ledger.masks:
+        if not mask.explains and not beneath.isdisjoint(mask.names):
+            holds = np.logical_or(holds, mask.where)
+    return holds
 
 
 def _shown(self: Calculation, declared: Declaration) -> str:

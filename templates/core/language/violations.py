@@ -108,7 +108,8 @@ def _written(template: Calculation, comparison: Comparison) -> str:
         np.asarray(right.value, dtype=float),
         ~np.asarray(comparison.holds, dtype=bool) & np.asarray(comparison.where, dtype=bool),
     )
-    beyond = np.where(broken, np.nan_to_num(np.abs(low - high), nan=-1.0), -2.0)
+    broken = broken & ~np.isnan(low - high)  # without a value nothing is compared
+    beyond = np.where(broken, np.abs(low - high), -2.0)
     worst = np.unravel_index(int(np.argmax(beyond)), beyond.shape)
     values = (float(scale.from_si(float(si[worst]))) for si in (low, high))
     sides = [Side(*side) for side in zip(words, values, strict=True)]

@@ -84,17 +84,31 @@ def test_no_route_changes_a_released_revision(team, room, design):
 
 
 def test_its_design_is_archived_instead_of_deleted(room, design):
-    refused = problem(room.author.delete(f"{API}/designs/{design['id']}"), 409, "design-released")
+    refused = problem(
+        room.author.delete(f"{API}/designs/{design['id']}", headers={"If-Match": "*"}), 409, "design-signed"
+    )
     assert "archive it instead" in refused["detail"]
     answer = room.author.post(f"{API}/designs/{design['id']}/labels", json={"archived": True})
     assert answer.json()["archived"]
+
+
+def test_a_design_under_approval_is_not_deleted_by_a_bystander(room):
+    design = created(room.author, moody("19 mm"))
+    signing(room.author, design, "calculated")
+    refused = problem(
+        room.author2.delete(f"{API}/designs/{design['id']}", headers={"If-Match": "*"}), 409, "design-signed"
+    )
+    assert "revision 1" in refused["detail"]
+    assert room.author.get(f"{API}/designs/{design['id']}").status_code == 200
 
 
 def test_a_withdrawn_release_keeps_its_design_too(room):
     design = created(room.author, moody("18 mm"))
     signed(room, design)
     signing(room.checker, design, "withdrawn", reason="wrong")
-    problem(room.author.delete(f"{API}/designs/{design['id']}"), 409, "design-released")
+    problem(
+        room.author.delete(f"{API}/designs/{design['id']}", headers={"If-Match": "*"}), 409, "design-signed"
+    )
 
 
 @pytest.mark.parametrize(

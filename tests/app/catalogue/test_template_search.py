@@ -27,6 +27,10 @@ def found(query):
         ("DIN 31652", FILMS), ("DIN ISO 7902", FILMS), ("Holzer", {"forced_torsion", "torsional_vibration"}),
         ("SAE J300", {"oil_film"}), ("Findley", {"fatigue_life"}), ("Rayleigh", {"slider_bearing"}),
         ("h_min", {"oil_film", "thrust_bearing"}), ("η", {"oil_film"}), ("ψ", {"oil_film"}),
+        ("Petroff", {"journal_friction"}), ("Hersey number", {"oil_film"}), ("DuBois", {"oil_film"}),
+        ("Kingsbury", {"thrust_bearing"}), ("ball bearing", {"rolling_bearing_life"}),
+        ("Palmgren", {"fatigue_life", "rolling_bearing_life"}), ("Wöhler curve", {"stress_life"}),
+        ("Haigh diagram", {"stress_life"}),
     ],
 )  # fmt: skip
 def test_a_template_is_found_by_what_an_engineer_calls_it(query, ids):
@@ -50,6 +54,16 @@ def test_both_definitions_are_told_with_their_factor_which_is_right(name):
     # Shigley 12-1 by hand: r 50 mm, c 0.05 mm, 50 rev/s, P = 10 kN / (100 mm · 50 mm) = 2 MPa
     shigley = (50 / 0.05) ** 2 * 0.01 * 50 / 2e6
     assert shigley == pytest.approx(1 / (2 * np.pi * outputs["sommerfeld_number"].value), rel=1e-9)
+
+
+def test_the_note_on_hersey_has_the_factor_which_is_right():
+    (note,) = found("Hersey")[1]
+    assert "2 pi times as large" in note
+    outputs = evaluate(
+        OilFilm, OilFilm.example, outputs=["stribeck_duty_parameter", "dynamic_viscosity"]
+    ).outputs
+    hersey = outputs["dynamic_viscosity"].value * 1e-3 * (5000 / 60) / (25e3 / (0.048 * 0.018))
+    assert outputs["stribeck_duty_parameter"].value == pytest.approx(2 * np.pi * hersey, rel=1e-9)
 
 
 def test_over_http_on_the_page_and_on_the_command_line(http):

@@ -94,10 +94,12 @@ def test_explain_copy_restore_and_delete(client):
     restored = client.restore(changed, 1, "as it was")
     assert (restored.revision, restored.parameters) == (3, design.parameters)
     assert [one.note for one in client.revisions(design.id)] == ["as it was", None, None]
-    assert client.delete(copied.id) is None
+    assert client.delete(copied) is None
     with pytest.raises(Problem) as missing:
         client.design(copied.id)
     assert missing.value.status == 404
+    assert copied.id in {one.id for one in client.designs(deleted="true")}
+    assert client.undelete(copied.id).id == client.design(copied.id).id == copied.id
 
 
 @pytest.mark.slow

@@ -75,7 +75,8 @@ class TestRevisions:
 
     def test_a_revision_equals_itself(self, http, design):
         comparison = compared(http, design["id"], revision=2, **{"with": 2})
-        assert all(part == [] for name, part in comparison.items() if name not in ("old", "new"))
+        assert all(part == [] for name, part in comparison.items() if name not in ("old", "new", "table"))
+        assert [row["name"] for row in comparison["table"]["rows"]] == ["revision 2"]
 
     def test_units_of_display(self, http, design):
         comparison = compared(http, design["id"], revision=1, **{"with": 2, "units": "us"})
@@ -98,6 +99,78 @@ class TestRevisions:
     def test_what_is_not_there_is_said(self, http, design, query, status, slug):
         problem(http.get(f"{DESIGNS}/{design['id']}/compare", params=query), status, slug)
         problem(http.get(f"{DESIGNS}/none/compare"), 404, "not-found")
+
+
+class TestTable:
+    """The main results of both revisions, with the change of the newer one."""
+
+    def values(self, table, row):
+        (row,) = (one for one in table["rows"] if one["name"] == row)
+        return dict(zip([one["name"] for one in table["columns"]], row["values"], strict=True))
+
+    def test_results_of_both_revisions_with_their_change(self, http, design):
+        comparison = compared(http, design["id"], revision=1, **{"with": 3})
+        table = comparison["table"]
+        names = [column["name"] for column in table["columns"]]
+        assert names == [
+            "film.radial_load", "film.speed", "film.relative_eccentricity", "film.minimum_film_thickness"
+        ], "the model is the same, so that its mass is left out"  # fmt: skip
+        film = by_name(comparison["outputs"])["film.minimum_film_thickness"]
+        assert self.values(table, "revision 1")[names[-1]] == film["old"]["value"]
+        assert self.values(table, "revision 3")[names[-1]] == film["new"]["value"]
+        assert table["rows"][1]["changes"] == pytest.approx([0, 0.2, *table["rows"][1]["changes"][2:]])
+        assert table["rows"][1]["changes"][-1] == pytest.approx(film["change"])
+        assert "changes" not in table["rows"][0]
+
+    def test_measures_of_solids_are_columns(self, http, design):
+        comparison = compared(http, design["id"], revision=1, **{"with": 2})
+        mass = by_name(comparison["measurements"])["model.mass"]
+        table = comparison["table"]
+        assert self.values(table, "revision 1")["model.mass"] == pytest.approx(mass["old"]["value"])
+        assert self.values(table, "revision 2")["model.mass"] == pytest.approx(mass["new"]["value"])
+        us = compared(http, design["id"], revision=1, **{"with": 2, "units": "us"})["table"]
+        assert self.values(us, "revision 1")["model.mass"] == pytest.approx(mass["old"]["value"] / 0.45359237)
+        assert {"name": "model.mass", "words": "mass of model", "unit": "lb"} in us["columns"]
+
+    def test_the_governing_row_of_both_is_marked(self, http):
+        limit = {"criteria": {"thick": {"require": "film.minimum_film_thickness >= 3 um"}}}
+        document = {**paper(name="judged twice"), **limit}
+        del document["model"]
+        document["steps"]["film"]["inputs"]["bearing_diameter"] = "48 mm"
+        first = created(http, document)
+        slow = {"steps": {"film": {"inputs": {"speed": "2500 rpm"}}}}
+        table = compared(http, patched(http, first, slow)["id"])["table"]
+        assert [row.get("governs", False) for row in table["rows"]] == [False, True]
+        assert table["governing"].startswith("revision 2 governs; ")
+        again = {"steps": {"film": {"inputs": {"speed": "2499 rpm"}}}}
+        design = patched(http, http.get(f"{DESIGNS}/{first['id']}").json(), again)
+        table = compared(http, design["id"])["table"]
+        assert [row["governs"] for row in table["rows"]] == [True, True]
+        assert table["governing"].startswith("revision 2, revision 3 govern (2 equal within 0.5 %)")
+
+    def test_rows_of_variants_stand_below_each_other(self, http):
+        document = paper(name="two widths")
+        document["variants"] = {"wide": {"scale": "1.05"}, "old": {"scale": "1.02"}}
+        first = created(http, document)
+        design = patched(http, first, {"variants": {"old": None, "new": {"scale": "1.03"}}})
+        table = compared(http, design["id"])["table"]
+        assert [row["name"] for row in table["rows"]] == [
+            "revision 1: design itself", "revision 2: design itself", "revision 2: new",
+            "revision 1: wide", "revision 2: wide", "revision 1: old",
+        ]  # fmt: skip
+        changed = [row["name"] for row in table["rows"] if "changes" in row]
+        assert changed == ["revision 2: design itself", "revision 2: wide"]
+
+    def test_a_column_has_the_unit_of_the_newer_revision(self, http):
+        document = moody("10 mm", parameters={"gap": "2 mm"}, table={"columns": ["gap"]})
+        design = patched(http, created(http, document), {"parameters": {"gap": "1 inch"}})
+        table = compared(http, design["id"])["table"]
+        assert [column["unit"] for column in table["columns"]] == ["inch"]
+        assert [row["values"] for row in table["rows"]] == [[pytest.approx(2 / 25.4)], [1]]
+        design = patched(http, design, {"parameters": {"gap": "1 kg"}})
+        table = compared(http, design["id"])["table"]
+        assert [row["values"] for row in table["rows"]] == [[None], [1]]
+        assert table["rows"][0]["reasons"] == {"gap": "its unit inch does not fit the column"}
 
 
 class TestDesigns:
@@ -145,7 +218,7 @@ class TestValues:
 
     def test_a_temperature_has_a_difference_in_kelvin_and_no_relative_change(self):
         (item,) = self.differ({"value": 80, "unit": "degC"}, {"value": 90, "unit": "degC"})
-        assert item["difference"] == {"value": pytest.approx(10), "unit": "K"}
+        assert item["difference"] == {"value": pytest.approx(10), "unit": "delta_degC"}
         assert "change" not in item
 
     def test_from_zero_there_is_no_relative_change(self):
@@ -187,7 +260,7 @@ def test_verdicts_that_are_stored_are_compared(served, http):
 
     database = served.app.state.services.database
     id, before = (created(http, paper(name=name))["id"] for name in ("judged", "of before"))
-    judged = {"name": "film.film", "verdict": "met", "utilisation": 0.9}
+    judged = {"name": "film.film", "words": "film", "require": "1 <= 2", "verdict": "met", "utilisation": 0.9}
 
     def store(session):
         row = session.get(RevisionRow, (id, 1))

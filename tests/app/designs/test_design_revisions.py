@@ -62,12 +62,36 @@ class TestRevisions:
     def test_a_deleted_design_is_gone_from_lists_and_its_revisions_are_kept(self, http):
         design = created(http, moody("11 mm"))
         place = f"{DESIGNS}/{design['id']}"
-        assert http.delete(place).status_code == 204
+        assert http.delete(place, headers={"If-Match": '"1"'}).status_code == 204
         problem(http.get(place), 404, "not-found")
-        problem(http.delete(place), 404, "not-found")
+        problem(http.delete(place, headers={"If-Match": '"1"'}), 404, "not-found")
         problem(http.patch(place, json={}, headers={"If-Match": "*"}), 404, "not-found")
         listed = http.get(DESIGNS, params={"limit": 500}).json()["items"]
         assert design["id"] not in {item["id"] for item in listed}
+
+    def test_a_deletion_names_the_revision_that_was_read(self, http):
+        design = created(http, moody("11 mm"))
+        place = f"{DESIGNS}/{design['id']}"
+        problem(http.delete(place), 428, "precondition-required")
+        patched(http, design, {"note": "by somebody else", "parameters": {"more": "1 mm"}})
+        problem(http.delete(place, headers={"If-Match": '"1"'}), 412, "stale-revision")
+        assert http.get(place).json()["revision"] == 2
+
+    def test_a_deleted_design_is_listed_and_restored_with_all_its_revisions(self, http):
+        design = patched(http, created(http, moody("12 mm")), {"parameters": {"more": "1 mm"}})
+        place = f"{DESIGNS}/{design['id']}"
+        http.delete(place, headers={"If-Match": '"2"'}).raise_for_status()
+        deleted = http.get(DESIGNS, params={"limit": 500, "deleted": True}).json()["items"]
+        [own] = [item for item in deleted if item["id"] == design["id"]]
+        assert own["deleted"].startswith("20")
+        assert all("deleted" in item for item in deleted)
+        for _ in range(2):  # a repetition changes nothing
+            back = http.post(f"{place}/restore")
+            assert (back.status_code, back.headers["etag"]) == (200, '"2"')
+            assert back.json()["parameters"] == http.get(place).json()["parameters"] == design["parameters"]
+        assert len(http.get(f"{place}/revisions").json()["items"]) == 2
+        assert "deleted" not in http.get(DESIGNS).json()["items"][0]
+        problem(http.post(f"{DESIGNS}/{'0' * 24}/restore"), 404, "not-found")
         assert revision(http, design)["models"]["model"]["build"]
         assert http.get(f"{place}/revisions/1/model.step").status_code == 200
 

@@ -64,7 +64,7 @@ class TestTags:
         uses = lambda: {item["tag"]: item["designs"] for item in http.get(f"{API}/tags").json()["items"]}  # noqa: E731
         assert uses()[tag] == 3
         label(http, designs[0], archived=True)
-        http.delete(f"{DESIGNS}/{designs[1]['id']}")
+        http.delete(f"{DESIGNS}/{designs[1]['id']}", headers={"If-Match": "*"})
         assert uses()[tag] == 1
 
     @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from app.designs.engine.calculate import calculate
 from app.designs.engine.verdicts import judged
 from app.designs.explanation import explained
 from app.designs.graph import build_graph
-from app.designs.roundings import rounded
+from app.designs.result_cells import rounded
 from app.designs.service import resolved
 from app.designs.solution import solved
 from app.designs.tasks import DesignTask

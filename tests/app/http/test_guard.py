@@ -298,7 +298,12 @@ def test_own_pages_and_programs_change_what_they_want(served, http, victim):
     for headers in ([], own, own[:1], own[1:], [("Sec-Fetch-Site", "none")]):
         heard = ask(served.url, "POST", copy_of(victim), headers)
         assert heard.status in (201, 202), heard.body
-        assert http.delete(f"{API}/designs/{json.loads(heard.body)['id']}").status_code == 204
+        assert (
+            http.delete(
+                f"{API}/designs/{json.loads(heard.body)['id']}", headers={"If-Match": "*"}
+            ).status_code
+            == 204
+        )
 
 
 def test_a_commit_shows(http, stored, victim):
@@ -308,4 +313,4 @@ def test_a_commit_shows(http, stored, victim):
     response = http.post(copy_of(victim), headers={"Prefer": "wait=60"})
     assert response.status_code in (201, 202), response.text
     assert stored() != before
-    assert http.delete(f"{API}/designs/{response.json()['id']}").status_code == 204
+    assert http.delete(f"{API}/designs/{response.json()['id']}", headers={"If-Match": "*"}).status_code == 204

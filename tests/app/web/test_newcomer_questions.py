@@ -83,18 +83,19 @@ def test_which_width_costs_least_power(bearing, watched, http):
     estimate = page.locator("[data-estimate]")
     expect(estimate).to_contain_text("film level map", timeout=patient(20_000))
     expect(estimate).to_contain_text(f"Set aside in this study: {WIDTH} {RELATION}")
-    assert float(re.search(r"(?:About|Less than) ([\d.]+) s", estimate.inner_text()).group(1)) < 5
+    expect(estimate).to_contain_text("The time depends on how soon the search converges")
     held = page.locator('[name^="hold."]:checked').evaluate_all("(boxes) => boxes.map(({ name }) => name)")
     assert "hold.film.film" in held
     assert "hold.film.whirl" not in held
     page.get_by_role("button", name="Start the study").click()
     answer = page.locator("[data-answer]")
-    expect(answer).to_contain_text(f"Least {LOSS}", timeout=patient(60_000))
+    expect(answer).to_contain_text(f"Smallest {LOSS}", timeout=patient(60_000))
     expect(answer).to_contain_text(f"{WIDTH} = 36.367 mm")
     study = http.get(f"{API}/studies/{page.url.rpartition('/')[2]}").json()
     assert study["result"]["best"]["verdict"] == "met"
     assert study["set_aside"] == {WIDTH: RELATION}
-    page.locator(".best").get_by_role("button", name=re.compile("Use row")).click()
+    best = page.get_by_role("region", name="Table of the best row")
+    best.get_by_role("button", name=re.compile("Use row")).click()
     page.wait_for_url(place)
     expect(page.locator(".page-head")).to_contain_text(f"replaces the relation of {WIDTH} ({RELATION})")
     saved = http.get(f"{API}/designs/{place.rpartition('/')[2]}").json()["steps"]["film"]["inputs"]

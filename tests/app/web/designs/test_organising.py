@@ -62,6 +62,32 @@ def test_a_design_is_tagged_found_and_archived_from_the_home_page(watched, http,
 
 
 @pytest.mark.slow
+def test_a_deleted_design_is_restored_from_the_list_of_deleted_ones(watched, http, design, word):
+    page = watched.page
+    watched.open(f"/designs/{design['id']}")
+    page.locator("details.confirm > summary").click()
+    page.get_by_role("button", name="Delete this design").click()
+    expect(card(page, word)).to_have_count(0)
+    page.get_by_role("link", name="Deleted designs").click()
+    page.get_by_role("button", name=f"Restore {word}").click()
+    expect(page).to_have_url(re.compile(design["id"]))
+    assert http.get(f"{API}/designs/{design['id']}").json() == design
+    assert watched.faults() == []
+
+
+@pytest.mark.slow
+def test_a_page_that_is_no_longer_current_deletes_nothing(watched, http, design):
+    page = watched.page
+    watched.open(f"/designs/{design['id']}")
+    place, changed = f"{API}/designs/{design['id']}", {"parameters": {"more": "1 mm"}}
+    http.patch(place, json=changed, headers={"If-Match": "*"}).raise_for_status()
+    page.locator("details.confirm > summary").click()
+    page.get_by_role("button", name="Delete this design").click()
+    expect(page.get_by_text("the design is at revision 2, not at")).to_be_visible()
+    assert http.get(place).json()["revision"] == 2
+
+
+@pytest.mark.slow
 def test_a_design_is_renamed_and_found_by_its_new_name(watched, http, design, word):
     page = watched.page
     watched.open("/")
@@ -112,7 +138,10 @@ def test_the_history_leads_to_any_two_revisions(watched, http, paper):
     expect(speed).to_contain_text("5000")
     expect(speed).to_contain_text("7000")
     expect(speed).to_contain_text("+40 %")
-    expect(page.locator('[data-compared="film.minimum_film_thickness"]')).to_be_visible()
+    films = page.get_by_role("region", name="Results of both revisions")
+    expect(films.get_by_role("columnheader", name="Minimum film thickness [µm]")).to_be_visible()
+    expect(films.locator("tbody tr")).to_have_count(2)
+    expect(page.locator('[data-compared="film.minimum_film_thickness"]')).to_have_count(0)
     copy = http.post(f"{API}{paper}/copy", json={"name": "the other one"}).json()
     other = http.patch(
         f"{API}/designs/{copy['id']}",

@@ -1,7 +1,13 @@
 """Studies by mouse: a refused form, a contour whose rows become revisions, the limit in a histogram."""
 
+import csv
+import io
+import re
+from html.parser import HTMLParser
+
 import pytest
 from browsing import CHROMIUM
+from openpyxl import load_workbook
 from patience import patient, until
 from playwright.sync_api import expect
 from serving import API
@@ -52,7 +58,7 @@ def test_a_study_that_ends_shows_its_results_without_a_reload(watched, http, bea
     expect(badge).to_have_text("done", timeout=patient(120_000))
     expect(page.locator("[data-progress]")).to_be_hidden()
     expect(page.locator(".page-head")).to_contain_text("600 of 600 rows")
-    expect(page.locator("table.rows tbody tr")).to_have_count(20)
+    expect(page.get_by_role("region", name="Table of rows").locator("tbody tr")).to_have_count(20)
     expect(page.locator("[data-charts]")).to_be_visible(timeout=patient(60_000))
     assert page.evaluate("() => window.isKept")
     assert watched.faults() == []
@@ -120,12 +126,61 @@ def test_a_front_is_listed_with_what_its_levels_promise(http, bearing):
     ended = until(lambda: http.get(f"{API}/studies/{study}").json(), lambda now: now["state"] in ENDED)
     front, (trade,) = ended["result"]["front"], ended["result"]["trade"]
     page = http.get(f"/studies/{study}").text
-    listed = page.partition("<table data-front>")[2].partition("</table>")[0]
-    assert listed.count("<tr>") == 1 + len(front) > 2
+    listed = page.partition('aria-label="Table of the front"')[2].partition("</table>")[0]
+    assert listed.count("<tr data-result=") == len(front) > 1
     assert f'name="row" value="{front[-1]["row"]}"' in listed
     promised = page.partition("<details data-trade>")[2].partition("</details>")[0]
     assert f"{len(trade['front'])} points of its front, 64 rows" in promised
     assert promised.count("<tr>") == 1 + len(trade["front"])
+
+
+class Table(HTMLParser):
+    """A table of results on a page: units and sorting addresses of the heads, numbers of the rows."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.heads, self.links, self.rows = [], [], {}
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        attrs = dict(attrs)
+        if tag == "th" and "title" in attrs:
+            self.heads.append(attrs["title"])
+        elif tag == "a" and attrs["href"].startswith("?sort="):
+            self.links.append(attrs["href"])
+        elif "data-result" in attrs:
+            self.row = self.rows.setdefault(attrs["data-result"], [])
+        elif "data-number" in attrs:
+            self.row.append(float(attrs["data-number"]))
+
+
+def test_the_rows_on_the_page_and_in_the_files_have_equal_numbers(http, grid):
+    study, _ = grid
+    page = http.get(study).text
+    table = Table(page.partition('aria-label="Table of rows"')[2].partition("</table>")[0])
+    assert table.heads == [CLEARANCE, WIDTH, FILM, "film.power_loss"]
+    assert 'Minimum film thickness</a> <span class="head-unit">[µm]</span>' in page
+    items = http.get(f"{API}{study}/rows?limit=20").json()["items"]
+    assert table.rows == {str(one["row"]): [one["values"][name] for name in table.heads] for one in items}
+    lines = list(csv.reader(io.StringIO(http.get(f"{API}{study}/rows.csv").text)))
+    assert [[float(cell) for cell in line[1:5]] for line in lines[2:22]] == list(table.rows.values())
+    sheet = load_workbook(io.BytesIO(http.get(f"{API}{study}/rows.xlsx").content)).active
+    cells = sheet.iter_rows(min_row=3, max_row=22, min_col=2, max_col=5, values_only=True)
+    assert [list(row) for row in cells] == [pytest.approx(row, rel=1e-15) for row in table.rows.values()]
+    down = http.get(f"{study}{table.links[2]}").text
+    up = Table(down.partition('aria-label="Table of rows"')[2].partition("</table>")[0])
+    films = [row[2] for row in up.rows.values()]
+    assert films == sorted(films)
+    assert up.links[2].startswith("?sort=-")
+
+
+def test_the_form_lists_judged_and_main_results_first(http, bearing):
+    """Judged ones are ticked; others may need a more expensive level."""
+    first = http.get(f"{bearing}/studies/new").text.partition("<summary>More outputs")[0]
+    listed = re.findall(r'name="outputs\.([^"]+)"( checked)?', first)
+    assert FILM in http.get(f"{API}{bearing}/network").json()["table"]
+    assert (FILM, " checked") in listed
+    assert ("film.total_oil_flow", "") in listed
 
 
 def test_the_form_studies_the_variant_that_is_chosen(http, bearing):
@@ -187,7 +242,8 @@ def test_a_grid_of_two_shows_a_contour_and_a_chosen_row_becomes_a_revision(plott
     expect(page.locator("[data-chart]")).to_have_value("contour", timeout=patient(20_000))
     page.locator("[data-by]").select_option("thick_enough")
     expect(page.locator("[data-drawing] .js-plotly-plot, [data-drawing].js-plotly-plot")).to_be_visible()
-    page.locator(".rows").get_by_role("button", name="Use row 7", exact=True).click()
+    rows = page.get_by_role("region", name="Table of rows")
+    rows.get_by_role("button", name="Use row 7", exact=True).click()
     page.wait_for_url(f"**{design}")
     row = http.get(f"{API}{study}/rows?limit=25").json()["items"][7]["values"]
     sheet = http.get(f"{API}{design}").json()

@@ -77,8 +77,13 @@ def test_a_violated_limit_is_worded_as_violated():
     )
     assert margin(criterion(WORST)) == "−0.47 µm (−0.52 … −0.42)"
     above = criterion(
-        MET, verdict="not_met", value={"value": 120.0, "unit": "degC"}, margin={"value": -10.0, "unit": "K"}
+        MET,
+        verdict="not_met",
+        value={"value": 120.0, "unit": "degC"},
+        margin={"value": -10.0, "unit": "delta_degC"},
     )
+    assert margin(above) == "−10 K"
+    assert margin(above.in_units("us")) == "−18 Δ°F"
     assert line(above).sentence.startswith("film temperature 120 °C is above 110 °C: not met")
     assert title(above) == "film temperature"
 

@@ -18,7 +18,7 @@ from templates.core.criteria.comparison import (
 )
 from templates.core.criteria.criterion import NameDescription, read_criterion
 from templates.core.criteria.evaluation import Absent, Along, judge
-from templates.core.criteria.judgement import sentence
+from templates.core.criteria.judgement import sentence, verdict_sentence
 from templates.core.criteria.summary import summarised, worst_first
 from templates.core.criteria.worst import worst_of_rows
 from templates.core.errors import FaultyText
@@ -123,7 +123,7 @@ def test_analytic_temperatures_have_a_margin_in_kelvin_and_no_utilisation():
     criterion = read_criterion("hot", "temperature <= 120 degC", KNOWN)
     result = judge(criterion, {"temperature": Estimate(273.15 + 95)})
     assert (result.value, result.limit) == (pytest.approx(95), pytest.approx(120))
-    assert (result.margin, result.margin_unit, result.utilisation) == (pytest.approx(25), "K", None)
+    assert (result.margin, result.margin_unit, result.utilisation) == (pytest.approx(25), "delta_degC", None)
 
 
 def test_analytic_angles_are_off_by_a_share_of_90_degrees():
@@ -333,6 +333,30 @@ def test_summary_is_worst_first_and_the_governing_one_is_checked():
     assert (summary.verdict, summary.governing) == ("not_met", "c")
     assert summary.headline == "1 met, 2 not met, 1 undecided, 1 not checked"
     assert summarised([]).headline == "no criteria"
+
+
+@pytest.mark.parametrize(
+    ("require", "numbers", "said"),
+    [
+        ("a.t_out <= a.t_in + 30 delta_degC", (90.0, 70.0, "degC"),
+         "t out 90 °C is above t in + 30 K = 70 °C: not met"),
+        ("p <= 231 GPa * psi", (300.0, 264.0, "MPa"), "p 300 MPa is above 231 GPa * psi = 264 MPa: not met"),
+        ("1 - eps >= 0.05", (0.02, 0.05, "1"), "1 - eps = 0.02 is below 0.05: not met"),
+        ("p <= 30 W/(m*K)", (40.0, 30.0, "W/(m*K)"), "p 40 W/(m·K) is above 30 W/(m·K): not met"),
+    ],
+)  # fmt: skip
+def test_both_sides_of_a_sentence_are_in_words_with_printed_units(require, numbers, said):
+    assert verdict_sentence(require, "not_met", numbers, misses=True, error_known=True, truth=None) == said
+
+
+@pytest.mark.parametrize(
+    ("truth", "named"),
+    [("rigid film", True), ("balanced film", True), ("fine_field", False), ("finer sector", False),
+     ("Swift-Stieber, shear all around", False)],
+)  # fmt: skip
+def test_a_verdict_names_a_model_and_no_other_solution_of_the_same_model(truth, named):
+    said = verdict_sentence("h >= 3 um", "met", (4.0, 3.0, "um"), misses=False, error_known=True, truth=truth)
+    assert said == "h 4 µm is not below 3 µm: met" + (f", {truth}" if named else "")
 
 
 def test_a_sentence_is_about_the_case():
