@@ -1,4 +1,4 @@
-"""Three jobs of an engineer, each from the front page alone; the hand that does them counts clicks and fields.
+"""Three jobs of an engineer, each from the front page alone; the hand counts its clicks and fields.
 
 A job ends with its result on a page or in a file. At the end nothing went wrong on any page, and a reload
 shows the same result.
