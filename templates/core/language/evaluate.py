@@ -391,7 +391,7 @@ def assumed(
 ) -> list[Assumption]:
     """Return the assumptions behind the outputs and the judged criteria of a template."""
     cls, typed = type(template), template.ledger.typed
-    given = frozenset([name for name in typed if isinstance(cls.inputs.get(name), Derived)])
+    given = cls._derived.intersection(typed)
     stated = _stated(cls, frozenset(outputs), given)  # type: ignore[arg-type]  # a class has a hash
     return [*(one for one in stated if one.name not in typed), *_limits(cls, criteria)]
 
