@@ -335,6 +335,18 @@ def answers_at_level(template: Template, outputs: Iterable[str]) -> tuple[dict[s
     return part.answers, part.error
 
 
+def answers_only(template: Template, outputs: Iterable[str]) -> dict[str, Answer]:
+    """Return a template's answers in declared units, without their errors and warnings.
+
+    Raises
+    ------
+    InvalidInputs
+        If a result is outside its domain.
+    """
+    with np.errstate(all="ignore"):
+        return _answers(template, list(outputs), {})
+
+
 def evaluate_at_level(
     template: Template, outputs: Iterable[str]
 ) -> tuple[dict[str, Answer], dict[str, Any], list[Notice]]:
