@@ -11,10 +11,11 @@ from cad.drafting.paper import as_pdf
 from cad.drafting.sheet import write_dxf
 from cad.drafting.svg import write_drawing
 from cad.drawing import write_svg
-from cad.file_kinds import BY_PART, VALIDATED, bodies_of, deflection_of, plain_kind
+from cad.file_kinds import BY_PART, STEP, VALIDATED, bodies_of, deflection_of, plain_kind
 from cad.gltf import write_glb
 from cad.header import Header, read_header
 from cad.mesh import Mesh, closed_mesh, mesh
+from cad.part_step import part_step
 from cad.picture import write_png
 from cad.step import Body, read_step
 from cad.stl import write_stl
@@ -38,6 +39,8 @@ def derive(step: bytes, kind: str) -> bytes:
     """
     if kind == VALIDATED:
         return with_validation(step)
+    if kind != STEP and plain_kind(kind) == STEP:
+        return part_step(step, kind)
     whole, header = read_step(step), read_header(step)
     bodies = bodies_of(kind, whole)
     if (write := _DRAWERS.get(plain_kind(kind))) is not None:
@@ -97,4 +100,4 @@ DERIVED = (VALIDATED, *_WRITERS, *_DRAWERS)
 
 def is_derived(kind: str) -> bool:
     """Return whether a kind, perhaps with options, is derived from the STEP file."""
-    return kind in DERIVED or plain_kind(kind) in BY_PART
+    return kind in DERIVED or (kind != STEP and plain_kind(kind) in BY_PART)

@@ -20,6 +20,9 @@ from templates.core.units.units import unit
 if TYPE_CHECKING:
     from cad.step import Body
 
+STEP = "step"
+"""The kind of the file from which all others are derived."""
+
 VALIDATED = "validated.step"
 """The kind of a STEP file that states volume, area and centroid of each part."""
 
@@ -45,7 +48,7 @@ SHOWN = ("step", "glb")
 """Kinds of files that a page shows; they are created with a build, all others on request."""
 MESHES = ("glb", "stl", "3mf")
 """Kinds of files made of triangles; a user may choose their deflection."""
-BY_PART = (*MESHES, "brep", "drawing.svg", "dxf")
+BY_PART = ("step", *MESHES, "brep", "drawing.svg", "dxf")
 """Kinds of files that can contain a single part, in its own coordinates."""
 
 FINEST, COARSEST = 1e-4, 0.1

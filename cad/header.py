@@ -17,6 +17,9 @@ from cad.part21 import description, plain, quoted
 LONGEST_HEADER = 65536
 """Number of bytes that are searched for the header; `write_header` writes a few thousand."""
 
+ONLY_PART = "only part"
+"""Name in the header of a file of one part of a model, whose value is the part; no parameter is called so."""
+
 _LONGEST_PART = 180  # longest part of a value in one string, after its name
 _NO_TIME = "1970-01-01T00:00:00"
 _TITLE = re.compile(r"Crankwright ([a-z][a-z0-9_]{0,63}) version ([1-9][0-9]{0,8})")

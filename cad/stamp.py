@@ -21,7 +21,7 @@ from cad.part21 import end_of_string, plain, quoted
 
 _STRING = r"'(?:[^']|'')*'"
 _FILE = re.compile(rf"FILE_NAME\(({_STRING}\s*,\s*{_STRING})")
-_PRODUCT = re.compile(rf"^#\d+ = PRODUCT\(\s*({_STRING}\s*,\s*({_STRING})\s*,\s*{_STRING})", re.MULTILINE)
+_PRODUCT = re.compile(rf"^#\d+ = PRODUCT\(\s*({_STRING}\s*,\s*({_STRING})\s*,\s*({_STRING}))", re.MULTILINE)
 _COMMA = re.compile(r"\s*,\s*")
 _VERSION = re.compile(rf"^#\d+ = PRODUCT_DEFINITION_FORMATION\(\s*({_STRING})", re.MULTILINE)
 
@@ -188,18 +188,27 @@ def _holes(text: str) -> list[_Hole]:
     file = _FILE.search(text)
     holes = [_Hole(*file.span(1), 2, _file)] if file else []
     for number, product in enumerate(_PRODUCT.finditer(text)):
-        write = partial(_part, plain(product[2])) if number else _root
+        write = partial(_part, plain(product[2])) if number else partial(_root, plain(product[3]))
         holes.append(_Hole(*product.span(1), 3, write))
     holes += (_Hole(*version.span(1), 1, _version) for version in _VERSION.finditer(text))
     return sorted(holes, key=lambda hole: hole.start)
 
 
 def _file(stamp: Stamp) -> tuple[str, ...]:
-    return f"{stamp.wide_stem}.step", stamp.date
+    part = f"_{plain_name(stamp.part)}" if stamp.part else ""
+    return f"{stamp.wide_stem}{part}.step", stamp.date
 
 
-def _root(stamp: Stamp) -> tuple[str, ...]:
-    """Return the id, name and description of the product that stands for the whole file."""
+def _root(volume: str, stamp: Stamp) -> tuple[str, ...]:
+    """Return the id, name and description of the product that stands for the whole file.
+
+    A file of one part describes its product by its volume.
+    """
+    if stamp.part:
+        id, called, _ = _part(stamp.part, stamp)
+        own = stamp.of_part(volume)
+        mass = f"mass {own['mass']}" if own["mass"] else ""
+        return id, called, ", ".join(filter(None, (own["material"], mass)))
     described = (
         f"design {stamp.design}",
         f"variant {stamp.variant}" if stamp.variant else "",

@@ -219,7 +219,7 @@ def download(
     """Return a file of a design under its name, `{design}_{model}_r{revision}.{kind}`.
 
     Without a revision it is the file of the newest valid model; `model` selects one if the design has
-    several. With `part`, a glb, stl, 3mf or brep file holds only this part.
+    several. With `part`, a step, glb, stl, 3mf or brep file or a drawing holds only this part.
     """
     one = f"/revisions/{revision}" if revision else ""
     named = f"/models/{model}" if model else ""

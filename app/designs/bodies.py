@@ -11,6 +11,7 @@ from pydantic.json_schema import SkipJsonSchema
 from app.calculations.bodies import OIL_FILM
 from app.designs.document import (
     CRITERION,
+    LONGEST_WORKSHEET,
     NAME,
     WORD,
     AssumedValue,
@@ -133,6 +134,11 @@ PATCH: JsonDict = {
         "assumed": {
             **_named(_part(AssumedValue)),
             "description": "proposed values by parameter; null removes the mark",
+        },
+        "worksheet": {
+            "type": ["string", "null"],
+            "maxLength": LONGEST_WORKSHEET,
+            "description": "the lines of the design; null removes them",
         },
         "note": {"type": ["string", "null"], "maxLength": LONGEST_NOTE},
     },

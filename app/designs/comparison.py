@@ -12,6 +12,7 @@ from app.catalogue.catalogues import Catalogues
 from app.designs import repository
 from app.designs.compared_results import compared_results
 from app.designs.differences import differing, differing_texts, leaves
+from app.designs.document import WORKSHEET
 from app.designs.schemas.comparison import Comparison, Side, VerdictChange, VerdictOf
 from app.plain import Json, JsonObject
 from app.presentation import numbers
@@ -100,6 +101,7 @@ class _Parts:
             relations={
                 **_named({name: _texts(step.get("relations", {})) for name, step in steps.items()}),
                 **_named({name: _texts(model.relations) for name, model in models.items()}),
+                **({WORKSHEET: lines} if (lines := row.document.get(WORKSHEET)) else {}),
             },
             inputs=_named({name: step["inputs"] for name, step in steps.items()}),
             outputs=_named({name: _outputs(step) for name, step in calculated.items()}),

@@ -143,6 +143,12 @@ class TableOfResults(Bounded):
         return _without_nothing(plain(self), "columns", "changes")
 
 
+WORKSHEET = "worksheet"
+"""The block of a design that its own lines make; criteria and relations use `worksheet.name`."""
+LONGEST_WORKSHEET = 16 * 1024
+"""Most characters of its text; a save reads it in the server, which takes up to a third of a second."""
+
+
 class AssumedValue(Bounded):
     """A value that was proposed for a parameter, and not given by a person who knows it."""
 
@@ -189,11 +195,18 @@ class Document(Bounded):
         {},
         description="proposed values by parameter; a parameter is assumed as long as it has this value",
     )
+    worksheet: str = Field(
+        "",
+        max_length=LONGEST_WORKSHEET,
+        description="lines in the language of worksheets: formulas, checks and plots of the design's values; "
+        "their results are `worksheet.name`, where the words of a line give the name",
+        examples=['r [1] = film.minimum_film_thickness / 2 um "film ratio"\ncheck r >= 1.5 "enough film"'],
+    )
 
     @model_serializer(mode="wrap")
     def without_nothing(self, plain: SerializerFunctionWrapHandler) -> JsonObject:
         """Remove empty optional members, so that equal documents have one stored form."""
-        return _without_nothing(plain(self), "criteria", "variants", "table", "assumed")
+        return _without_nothing(plain(self), "criteria", "variants", "table", "assumed", "worksheet")
 
     @model_validator(mode="before")
     @classmethod
@@ -215,6 +228,8 @@ class Document(Bounded):
         """Require that parameters, steps and models all have different names."""
         count = Counter(chain(self.parameters, self.steps, self.models))
         twice = sorted(name for name, times in count.items() if times > 1)
+        if self.worksheet and WORKSHEET in count:
+            raise ValueError("the design has a `worksheet` of its own: rename the value of this name")
         if twice:
             raise ValueError(f"{', '.join(twice)} names more than one parameter, step or model")
         return self

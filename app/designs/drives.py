@@ -120,7 +120,7 @@ def _names(graph: Graph) -> Iterator[NetworkName]:
             yield _name(name, "parameter", "parameter of the design", kind.unit)
     for block in graph.blocks.values():
         for tail, declared in block.cls.inputs.items():
-            if not isinstance(declared, Choice):
+            if not (isinstance(declared, Choice) or block.is_worksheet):
                 yield _declared(f"{block.name}.{tail}", "input", declared)
         for tail, formula in block.cls.formulas.items():
             yield _declared(f"{block.name}.{tail}", "output", formula)

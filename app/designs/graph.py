@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
+from functools import partial
 from graphlib import CycleError, TopologicalSorter
 from itertools import chain, filterfalse, pairwise
 from typing import TypeVar
@@ -17,7 +18,8 @@ from pydantic import ValidationError
 from app.catalogue.catalogues import Catalogues
 from app.designs.analyses import is_measured, is_table, measured_unit, questions, remedy
 from app.designs.choices import Choices
-from app.designs.document import Document, Model, Step, Version
+from app.designs.design_worksheet import worksheet_block
+from app.designs.document import WORKSHEET, Document, Model, Step, Version
 from app.designs.network import (
     LIMITS,
     Block,
@@ -50,6 +52,8 @@ T = TypeVar("T", bound=Template)
 MOST_RELATION_TEXT = 50_000
 """Largest number of characters in all relations of a design; parsing them takes a quarter of a second."""
 
+TOGETHER = "the lines of the worksheet are calculated together"
+
 __all__ = ["Block", "Catalogues", "Cell", "Graph", "build_graph", "raise_if"]
 
 
@@ -64,6 +68,7 @@ def build_graph(document: Document, catalogues: Catalogues) -> tuple[Graph, list
     unread = {
         *document.steps,
         *document.models,
+        *([WORKSHEET] if document.worksheet else []),
     } - network.blocks.keys()  # relations that use them are not reported
     links = {cell: _links(network, cell, unread) for cell in network.cells() if cell.uses}
     unknown = [
@@ -113,6 +118,11 @@ def _network(document: Document, catalogues: Catalogues) -> tuple[Network, list[
         blocks |= {block.name: block} if block else {}
         faults += wrong
     assumed = frozenset(Reference.parse(iteration.through) for iteration in document.iterations)
+    if document.worksheet:
+        without = Network(parameters, blocks, assumed)
+        block, wrong = worksheet_block(document.worksheet, without, partial(_kind_of_parameter, without))
+        blocks |= {block.name: block} if block else {}
+        faults += wrong
     demands, wrong = read_demands(document, blocks)
     columns = tuple(map(ItemReference.parse, document.table.columns))
     return Network(parameters, blocks, assumed, demands, columns), [*faults, *wrong]
@@ -336,9 +346,12 @@ def ordered(
     try:
         return tuple(TopologicalSorter(sources).static_order()), []
     except CycleError as error:
-        path = list(_named(network, error.args[1]))
+        cycle: Sequence[Node] = error.args[1]
+        path = list(_named(network, cycle))
     shown = " → ".join([*path, path[0]])
-    detail = f"each depends on the one before it: {shown}; break the loop or declare an iteration"
+    has_lines = any(isinstance(node, Block) and node.is_worksheet for node in cycle)
+    lines = f"; {TOGETHER}" if has_lines else ""
+    detail = f"each depends on the one before it: {shown}{lines}; break the loop or declare an iteration"
     cells = {cell.name for cell in network.cells()}
     return (), [Fault(next(name for name in path if name in cells), "loop", detail)]
 
@@ -374,6 +387,33 @@ def checked_kinds(network: Network, cells: Iterable[Cell]) -> tuple[dict[str, Ki
         else:
             kinds |= {cell.name: kind} if cell.declared is None else {}
     return kinds, list(faults.values())
+
+
+def _kind_of_parameter(network: Network, name: str) -> Kind:
+    """Return the kind of a parameter before the whole network is known.
+
+    Raises
+    ------
+    FaultyText
+        If its relations have a fault, form a loop, or use a result of the worksheet; the code is then `loop`.
+    """
+    before: dict[str, set[str]] = {}
+    left = [name]
+    while left:
+        if (one := left.pop()) not in before:
+            uses = network.parameters[one].uses
+            if own := next((used for used, at in uses.items() if at.block == WORKSHEET), None):
+                detail = f"{own} → {one} → {WORKSHEET}: {TOGETHER}"
+                raise FaultyText("loop", f"{detail}; let {one} follow from something else")
+            before[one] = uses.keys() & network.parameters.keys()
+            left += before[one]
+    kinds: dict[str, Kind] = {}
+    try:
+        for one in TopologicalSorter(before).static_order():
+            kinds[one] = _kind(network, kinds, network.parameters[one])
+    except (CycleError, KeyError):
+        raise FaultyText("unknown_name", f"{name} has no value: see the fault of its relation") from None
+    return kinds[name]
 
 
 def _kind(network: Network, kinds: Mapping[str, Kind], cell: Cell) -> Kind:

@@ -103,6 +103,11 @@ class Block:
         """Return whether the block is a CAD model."""
         return issubclass(self.cls, CadModel)
 
+    @property
+    def is_worksheet(self) -> bool:
+        """Return whether the block is the design's own worksheet, whose inputs are values of the design."""
+        return self.cls.sheet is not None and self.cls.sheet.is_exact
+
     @cached_property
     def solid(self) -> Solid:
         """Return the node of the model's solid."""

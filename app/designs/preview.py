@@ -9,7 +9,7 @@ from app.calculations.json_values import rendered
 from app.calculations.schemas.evaluations import Output
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository, results, tolerances
-from app.designs.document import Document, StoredDocument, merge
+from app.designs.document import WORKSHEET, Document, StoredDocument, merge
 from app.designs.engine.calculate import calculate
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import judged
@@ -19,10 +19,12 @@ from app.designs.parameter_explanation import shown
 from app.designs.result_cells import as_member
 from app.designs.results import Outcome
 from app.designs.schemas.designs import Change, ParameterChange, Preview, RevisionStep, RoundedValue, Status
+from app.designs.schemas.worksheets import DesignLine
 from app.designs.variants.checks import checked
 from app.designs.variants.together import Available
 from app.designs.variants.verdict import merged
 from app.designs.worksheet import previewed
+from app.designs.worksheet_lines import lines, typeset
 from app.plain import JsonObject
 from app.pool.questions import PREVIEW, Kind, Reply, json_answer, json_form
 from app.presentation.units import System
@@ -91,6 +93,7 @@ def preview(
         warnings=[*_warnings(steps), *tolerances.warnings(changed.model_dump())],
         model_parameters=_model_parameters(old, new, mismatched),
         **_rounded(new),
+        **_worksheet(new, outcomes),
     ).in_units(asked.system)
     if asked.worksheet:
         content.steps, content.parameters = previewed(new, steps, asked.system), _values(new)
@@ -175,6 +178,12 @@ def _warnings(steps: Mapping[str, RevisionStep]) -> list[Warning]:
 
 def _rounded(new: Calculation) -> dict[str, list[RoundedValue]]:
     return {name: list(map(RoundedValue.model_validate, rows)) for name, rows in as_member(new).items()}
+
+
+def _worksheet(new: Calculation, outcomes: Sequence[Outcome]) -> dict[str, list[DesignLine]]:
+    if WORKSHEET not in new.graph.blocks:
+        return {}
+    return {WORKSHEET: typeset(lines(new, results.rows_of(new, outcomes)))}
 
 
 def _values(new: Calculation) -> dict[str, Shown]:

@@ -18,6 +18,7 @@ from sqlalchemy import Text, bindparam, select, type_coerce
 from sqlalchemy.orm import Session
 
 from app.designs.schemas.designs import RevisionStep, Round, RoundedValue
+from app.designs.schemas.worksheets import DesignLine
 from app.plain import JsonObject
 from app.schemas.criteria import Criterion, Verdict
 from app.solids.schemas.analyses import ModelAnalysis
@@ -29,6 +30,7 @@ _TEXT = select(type_coerce(RevisionRow.results, Text)).where(
 )
 _JSON = JsonText()
 _ROUNDS = TypeAdapter(list[Round])
+_LINES = TypeAdapter(list[DesignLine])
 _ROUNDED = TypeAdapter(dict[str | None, list[RoundedValue]])
 _ANALYSES = TypeAdapter(dict[str, dict[str, ModelAnalysis]])
 _JUDGED: Mapping[str, TypeAdapter[list[Criterion] | Verdict | None]] = {
@@ -48,6 +50,8 @@ class Results:
     analyses: Mapping[str, dict[str, ModelAnalysis]]  # by model and kind
     governing: str = ""  # the variant that governs; empty if the design itself does
     governing_steps: Mapping[str, RevisionStep] = field(default_factory=dict)  # where they differ
+    lines: list[DesignLine] = field(default_factory=list)  # of the worksheet
+    governing_lines: list[DesignLine] = field(default_factory=list)
     rounded: Mapping[str | None, list[RoundedValue]] = field(
         default_factory=dict
     )  # by variant; None is the design itself
@@ -97,6 +101,8 @@ def _read(text: str) -> Results:
         analyses=_ANALYSES.validate_python(plain.get("analyses", {})),
         governing=governing["variant"],
         governing_steps=_steps(governing["steps"]),
+        lines=_LINES.validate_python(plain.get("lines", [])),
+        governing_lines=_LINES.validate_python(governing.get("lines", [])),
     )
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from app.calculations import json_values
 from app.calculations.json_values import rendered
-from app.designs.document import Document
+from app.designs.document import WORKSHEET, Document
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import judged
 from app.designs.network import Block
@@ -18,6 +18,7 @@ from app.designs.result_cells import ROUNDED, RoundedValue, as_member, cells, ro
 from app.designs.variants.names import BASE
 from app.designs.variants.verdict import VARIANT, merged
 from app.designs.worksheet import remember
+from app.designs.worksheet_lines import OWN_ROW, lines
 from app.plain import Json, JsonObject, Raw
 from app.pool.cost import EXPENSIVE
 from app.solids.analysis_views import in_design
@@ -29,7 +30,7 @@ from templates.core.errors import Fault
 from templates.core.language.criteria import warned
 from templates.core.language.record import record
 
-VARIANTS, TABLE, GOVERNING = "variants", "table", "governing"
+VARIANTS, TABLE, GOVERNING, LINES = "variants", "table", "governing", "lines"
 
 
 @dataclass(frozen=True)
@@ -60,17 +61,24 @@ def stored(
         TABLE: {BASE: cells(calculation)}
         | {outcome.name: cells(outcome.calculation) for outcome in outcomes if outcome.calculation},
     }
+    if WORKSHEET in calculation.graph.blocks:
+        results[LINES] = [line.plain() for line in lines(calculation, rows_of(calculation, outcomes))]
     if outcomes:
         base = _variant({}, own, single_outputs(calculation), {}, None, rounded(calculation))
         results[VARIANTS] = {BASE: base, **{outcome.name: _outcome(outcome) for outcome in outcomes}}
-        results |= _governing(criteria, outcomes, results["steps"])
+        results |= _governing(criteria, calculation, outcomes, results["steps"])
     return results
 
 
 def _governing(
-    criteria: Sequence[Judgement], outcomes: Sequence[Outcome], own: Mapping[str, object]
+    criteria: Sequence[Judgement],
+    base: Calculation,
+    outcomes: Sequence[Outcome],
+    own: Mapping[str, object],
 ) -> JsonObject:
-    """Return the steps of the governing variant that differ from the design's own, for its report.
+    """Return the steps of the governing variant that differ from the design's own, and its lines.
+
+    Both are for its report.
 
     Return an empty object if the design itself governs.
     """
@@ -80,7 +88,19 @@ def _governing(
     if outcome is None or outcome.calculation is None:
         return {}
     each = steps(outcome.calculation, worst_first(outcome.judgements))
-    return {GOVERNING: {"variant": name, "steps": {n: one for n, one in each.items() if one != own.get(n)}}}
+    shown = lines(outcome.calculation, rows_of(base, outcomes))
+    return {
+        GOVERNING: {
+            "variant": name,
+            "steps": {n: one for n, one in each.items() if one != own.get(n)},
+            **({LINES: [line.plain() for line in shown]} if shown else {}),
+        }
+    }
+
+
+def rows_of(base: Calculation, outcomes: Iterable[Outcome]) -> dict[str, Calculation]:
+    """Return the calculations of the design itself and of its calculated variants, by row."""
+    return {OWN_ROW: base, **{one.name: one.calculation for one in outcomes if one.calculation}}
 
 
 def analyses(calculation: Calculation) -> dict[str, JsonObject]:

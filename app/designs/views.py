@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from sqlalchemy.orm import Session
 
 from app.designs import releases, repository, tolerances
-from app.designs.document import assumed_values
+from app.designs.document import WORKSHEET, StoredDocument, assumed_values
 from app.designs.result_records import results_of
 from app.designs.schemas.designs import Design, DesignResults, DesignSummary, ModelMeasurements, Revision
+from app.designs.schemas.worksheets import DesignLine, DesignWorksheet
 from app.designs.variants.names import natural
+from app.designs.worksheet_lines import typeset
 from app.identity.rows import names
 from app.identity.schemas.principals import Author
 from app.plain import JsonObject
@@ -59,7 +61,7 @@ def _design(
             "steps": document["steps"],
             "models": document["models"],
             "iterations": document["iterations"],
-            **{name: document[name] for name in ("criteria", "table") if name in document},
+            **{name: document[name] for name in ("criteria", "table", WORKSHEET) if name in document},
             **_variants(document),
             **_assumed(document),
             "problem": problem,
@@ -67,6 +69,12 @@ def _design(
             "changed": changed,
         }
     )
+
+
+def _worksheet(document: StoredDocument, lines: Sequence[DesignLine]) -> dict[str, DesignWorksheet]:
+    """Return the member `worksheet` of a revision; empty if the design has none."""
+    text = document.get(WORKSHEET)
+    return {WORKSHEET: DesignWorksheet(text=text, lines=typeset(lines))} if text else {}
 
 
 def _assumed(document: JsonObject) -> JsonObject:
@@ -115,6 +123,7 @@ def revision(session: Session, row: RevisionRow) -> Revision:
                 for model in models
             },
             "iterations": results.iterations,
+            **_worksheet(row.document, results.lines),
             **({"rounded": results.rounded[None]} if None in results.rounded else {}),
             **({"warnings": unused} if (unused := tolerances.warnings(row.document)) else {}),
             **results.judged,
@@ -130,7 +139,8 @@ def governing(session: Session, row: RevisionRow) -> tuple[str, Revision]:
     results, own = results_of(session, row), revision(session, row)
     steps = {**own.steps, **results.governing_steps}
     rounded = results.rounded.get(results.governing or None, [])
-    return results.governing, own.model_copy(update={"steps": steps, "rounded": rounded})
+    lines = _worksheet(row.document, results.governing_lines or results.lines)
+    return results.governing, own.model_copy(update={"steps": steps, "rounded": rounded, **lines})
 
 
 def results(session: Session, row: RevisionRow) -> DesignResults | None:

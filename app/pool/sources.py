@@ -13,7 +13,8 @@ from cad.model_classes import class_of as class_of_description
 from templates.core.catalogue.discovery import declared_in, declared_in_file
 from templates.core.catalogue.modules import load, origin
 from templates.core.language.template import Template
-from templates.core.sheets.sheet import from_text
+from templates.core.sheets.design_names import DesignName
+from templates.core.sheets.sheet import Sheet, from_text
 
 _PROGRAM = str(Path(templates.__file__).parents[1])
 """Folder of the program's packages on this machine."""
@@ -39,6 +40,7 @@ class SheetSource:
     version: int
     text: str
     withdrawn: str | None
+    design: tuple[DesignName, ...] | None = None
 
 
 @dataclass(frozen=True)
@@ -57,8 +59,8 @@ def source_of(cls: type[Template]) -> Source:
     """Return the source of a template, with the code that this process uses."""
     if issubclass(cls, ImportedModel):
         return ImportedSource(cls.id, cls.version, cls.imported.text)
-    if cls.sheet is not None:
-        return SheetSource(cls.id, cls.version, cls.sheet.text, cls.withdrawn)
+    if isinstance(cls.sheet, Sheet):
+        return SheetSource(cls.id, cls.version, cls.sheet.text, cls.withdrawn, cls.sheet.design)
     module, path = inspect.getmodule(cls), inspect.getfile(cls)
     code = origin(module) if module else None
     if code is None:
@@ -95,4 +97,4 @@ def class_of(source: SheetSource) -> type[Template]:
     SheetRefused
         If its text has faults.
     """
-    return from_text(source.text, source.id, source.version, source.withdrawn)
+    return from_text(source.text, source.id, source.version, source.withdrawn, source.design)

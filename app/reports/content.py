@@ -83,6 +83,20 @@ class Plot:
 
 
 @dataclass(frozen=True)
+class WorksheetRow:
+    """A line of the design's worksheet: prose, or a formula with its value, or a check with its verdict."""
+
+    kind: str
+    is_heading: bool
+    words: str
+    formula: str  # MathML
+    value: Cell
+    verdict: str  # of a check
+    verdict_words: str
+    sentence: str  # the comparison of a check, or why there is no value
+
+
+@dataclass(frozen=True)
 class StepWarning:
     """A warning of a step."""
 
@@ -272,4 +286,6 @@ class Report:
     rounds: list[Round] = field(default_factory=list)
     rounded: list[Line] = field(default_factory=list)
     variants: Variants | None = None
+    worksheet: list[WorksheetRow] = field(default_factory=list)  # lines of the design itself
+    worksheet_plots: list[Plot] = field(default_factory=list)
     author: str = ""  # who saved the revision; empty on a service without keys

@@ -33,6 +33,7 @@ from app.reports.steps import step_of
 from app.reports.typesetting import DRAWING, PAINTED, PICTURE, SKETCH
 from app.reports.variants import variants_of
 from app.reports.verdict import judged
+from app.reports.worksheet import plots_of, rows_of
 from app.schemas.answers import Quantity
 from app.solids import rows
 from app.solids.models import Models
@@ -219,6 +220,8 @@ class Reports:
             models=models,
             rounds=[_round(one) for one in worked.iterations],
             rounded=[Line(one.name, "", Cell(text=rounded(one)), origin=one.rule) for one in worked.rounded],
+            worksheet=rows_of(worked),
+            worksheet_plots=plots_of(worked),
             author=author_of(revision.author, signed),
         )
 

@@ -80,6 +80,9 @@ def _quantities(worksheet: RevisionWorksheet) -> Iterator[Row]:
         yield Row("design", "parameter", name, *_read(raw), "given", "")
     for block, step in worksheet.steps.items():
         yield from _of_step(block, step)
+    for line in worksheet.worksheet.lines if worksheet.worksheet else ():
+        if line.value is not None:
+            yield _quantity("worksheet", "output", line.name.partition(".")[2], line.value, "")
     for block, model in worksheet.models.items():
         yield from _of_model(block, model)
 

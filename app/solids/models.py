@@ -21,7 +21,8 @@ from app.storage.errors import CannotRebuild, NotFound
 from app.workers.errors import DeadlineExceeded, JobCrashed, MemoryExceeded
 from cad.errors import GeometryError
 from cad.export import is_derived
-from cad.header import read_header
+from cad.file_kinds import with_part
+from cad.header import ONLY_PART, Header, read_header
 from cad.model import CadModel
 from cad.regenerate import as_text, build_key
 from cad.stamp import is_copy
@@ -145,7 +146,7 @@ class Models:
         assert build.model is not None, "a recorded build has its model"
         with self.database.read() as session:
             uses = [BuildUse.model_validate(use) for use in rows.users_of(session, header.build)]
-        kind, sha = self._compared_with(step, build.artifacts)
+        kind, sha = self._compared_with(step, header, build.artifacts)
         intact = self._is_intact(step, sha)
         original = step if intact else self.store.read(sha)
         about = {
@@ -158,8 +159,11 @@ class Models:
         read = statements(original, step)
         return Verification.model_validate({**about, "statements": read} if read else about)
 
-    def _compared_with(self, step: bytes, artifacts: Mapping[str, str]) -> tuple[str, str]:
+    def _compared_with(self, step: bytes, header: Header, artifacts: Mapping[str, str]) -> tuple[str, str]:
         """Return the kind and hash of the stored file with which a STEP file is compared."""
+        part = header.parameters.get(ONLY_PART)
+        if part is not None and (alone := with_part("step", part)) in artifacts:
+            return "step", artifacts[alone]
         copy = artifacts.get(VALIDATED)
         if copy is not None and is_validated(step) and not is_validated(self.store.read(artifacts["step"])):
             return VALIDATED, copy

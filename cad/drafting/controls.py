@@ -16,7 +16,7 @@ import numpy as np
 
 from cad.drafting.curves import Point
 from cad.drafting.declaration import Control, DrawingDeclaration
-from cad.drafting.dimension_layout import TEXT, DatumPlace, NoRoom, PlacedDimension
+from cad.drafting.dimension_layout import CROSSING, TEXT, DatumPlace, NoRoom, PlacedDimension
 from cad.drafting.formats import FORMATS
 from cad.drafting.frames import Frame
 from cad.drafting.letter_width import width_of
@@ -30,8 +30,10 @@ _ROUND = 4.0  # radius of a balloon [mm on paper]
 _DOT = 0.6  # radius of the dot at the end of a balloon's leader [mm on paper]
 _SHELF = 8.0  # length of the line on which the symbol of a texture stands [mm on paper]
 _STEMS = range(2, 90, 3)
-_FIRST, _RING, _BEYOND = 8, 4, 40
-"""Length of the shortest leader, step to the next, and how much longer one may be that crosses less."""
+_FIRST, _RING = 8, 4
+"""Length of the shortest leader, and the step to the next [mm on paper]."""
+
+_MOST_MET = 6  # lines that a leader crosses on a sheet that is large enough
 
 _SLANT = 0.4
 """Of a leader's length: how far it leads away from the line of the edge on which it ends, at least."""
@@ -46,7 +48,7 @@ BoxesAt = Callable[[np.ndarray, np.ndarray], np.ndarray]
 class Controls:
     """Draws the tolerances, datums and surface textures that a model declares for dimensioned faces.
 
-    `faults` counts symbols without a free place.
+    `faults` counts symbols without a free place, `crossed` those whose leaders cross many lines.
 
     `views` are the views of the sheet, each with the distance by which it is moved to the right.
     """
@@ -54,7 +56,7 @@ class Controls:
     def __init__(self, page: Page, room: Room, views: Sequence[tuple[View, float]], most: int) -> None:
         self.most = most
         self.page, self.plan, self.room, self.views = page, page.plan, room, views
-        self.faults = 0
+        self.faults = self.crossed = 0
 
     def draw(self, declared: DrawingDeclaration, placed: Sequence[PlacedDimension]) -> str:
         """Draw all symbols that belong to drawn dimensions; return the letter of the first datum.
@@ -89,8 +91,7 @@ class Controls:
     def _datum(self, placed: PlacedDimension, letter: str) -> None:
         if (one := placed.datum) is None:
             one = self._datum_nearby(placed)
-            self.room.add(one.box)
-            self.room.add_line(one.stem, is_drawn=True)
+            one.take(self.room)
         left, low, right, high = one.box
         corners = [(left, low), (right, low), (right, high), (left, high), (left, low)]
         self.page.symbol(one.symbol.joined(Symbol(lines=[corners])))
@@ -171,18 +172,19 @@ class Controls:
     ) -> tuple[Point, Point, bool]:
         """Return where a leader ends and starts, and whether it leads to the right; occupy its start.
 
-        Of the free places about an end, the nearest is taken whose leader crosses no outline, or fewest. It
-        crosses no view but that of the point `about`.
+        Of the free places the nearest is taken, where each line that the leader crosses counts as some more
+        length. The leader crosses no view but that of the point `about`.
         """
-        found: list[tuple[int, int, Point, Point, bool]] = []
+        found: list[tuple[float, int, Point, Point, bool]] = []
         farthest = round(150 * self.plan.format.width / FORMATS[0].width)
         for away in range(_FIRST, farthest, _RING):
-            if found and (min(found)[0] == 0 or away > found[0][1] + _BEYOND):
+            if found and away > min(found)[0]:
                 break
             for end in ends:
                 ring = self._ring(end, away * ways, boxes_at, about)
-                found += ((met, away, end, start, is_left) for met, start, is_left in ring)
+                found += ((away + CROSSING * met, met, end, start, left) for met, start, left in ring)
         self.faults += not found
+        self.crossed += bool(found) and min(found)[1] > _MOST_MET
         _, _, end, start, is_left = (
             min(found) if found else (0, 0, ends[0], (ends[0][0] + 8.0, ends[0][1]), False)
         )
@@ -192,12 +194,12 @@ class Controls:
     def _ring(
         self, end: Point, away: np.ndarray, boxes_at: BoxesAt, about: Point
     ) -> Iterator[tuple[int, Point, bool]]:
-        """Yield the free starts of leaders about their end, with the number of outlines that they cross."""
+        """Yield the free starts of leaders about their end, with the number of lines that they cross."""
         starts, is_left = end + away, away[:, 0] < -1e-9
         for place in np.flatnonzero(self.room.free(boxes_at(starts, is_left))):
             start = float(starts[place, 0]), float(starts[place, 1])
             if self.room.passes([end, start]) and self.room.is_apart([end, start], about):
-                yield self.room.outlines_met(end, start), start, bool(is_left[place])
+                yield self.room.lines_met(end, start), start, bool(is_left[place])
 
 
 def _boxes(width: float, height: float, foot: float) -> BoxesAt:

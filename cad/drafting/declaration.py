@@ -40,7 +40,8 @@ class DrawingDeclaration:
     datums
         Letters of datums by parameter; in an assembly only those to which a tolerance refers.
     textures
-        Greatest roughness Ra [µm] by parameter, where it is less than that of all other faces.
+        Greatest roughness Ra [µm] by parameter, where it is less than that of all other faces; for an
+        assembly only that of faces on several parts, because each part has its own sheet.
     sections
         Removed sections by letter, in the format that `cad.drafting.removed_section` describes.
     sizes
@@ -119,6 +120,7 @@ class DrawingDeclaration:
                 for name, size in sizes.items()
                 if name in limits
                 and _is_machined(size, seen)
+                and not (is_assembly and _is_of_one_part(size))
                 and (height := roughness(limits[name].width)) < TEXTURE
             },
             model.sections,
@@ -133,6 +135,11 @@ def _sizes(model: type[CadModel], header: Header, seen: Mapping[str, PartSurface
     except (InvalidInputs, LookupError):
         return {}
     return {name: size for name, size in read.items() if isinstance(size, Size)}
+
+
+def _is_of_one_part(size: Size) -> bool:
+    """Return whether each place of a size is on faces of a single part."""
+    return all(len({part for part, _ in (*place.first, *place.second)}) == 1 for place in size.places)
 
 
 def _is_machined(size: Size, seen: Mapping[str, PartSurfaces]) -> bool:

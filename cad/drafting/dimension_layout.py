@@ -25,16 +25,20 @@ from cad.drafting.symbols import Symbol, datum
 TEXT = 3.5  # height of letters [mm on paper]
 GAP = 0.9  # between a dimension line and its words [mm on paper]
 EXTENSION = 1.5  # of an extension line beyond its dimension line [mm on paper]
+CROSSING = 12.0  # length that a leader may add in order to cross one line less [mm on paper]
 
 _ARROWS = 7.0  # shortest dimension line with its arrows within [mm on paper]
 _NARROW = radians(15)  # angle whose words stand beside it
 _TAIL = 6.5  # of a line with its arrows outside [mm on paper]
-_BEYOND = (1.5, 4.5, 7.5, 10.5)  # from an end of a dimension line to a text beyond it [mm on paper]
+_BEYOND = (1.5, 4.5, 7.5, 10.5, 13.5, 16.5, 19.5)  # from an end of a line to a text beyond it [mm on paper]
+_CENTRED = 1e-6  # of a text in the middle of its line [mm on paper]
+_OFF_LINES = 0.6  # from a text to the extension line of another dimension [mm on paper]
 _FIRST = 10.0  # from the view to its first dimension line [mm on paper]
 _MOST_LANES = 40
 _STEMS = range(2, 40, 3)  # lengths of a datum's stem that are tried [mm on paper]
 _MOST_ALIKE = 8  # other arcs that are tried
 _AT_ONCE = 120  # places whose room is looked up at once
+_LOOKS = 4  # so often places are looked up from the first clear one on
 _NEAREST, _FARTHEST, _STEP = 5.0, 150.0, 3.0  # from what is measured to its words [mm on A3]
 
 
@@ -53,6 +57,13 @@ class DatumPlace:
         middle = end[0] + TEXT * cos(turn), end[1] + TEXT * sin(turn)
         foot = tip[0] + cos(turn), tip[1] + sin(turn)
         return DatumPlace(around(middle, 2 * TEXT, 2 * TEXT), symbol, (foot, end))
+
+    def take(self, room: Room) -> None:
+        """Occupy the place of the letter, the stem and the triangle."""
+        room.add(self.box)
+        room.add_line(self.stem, is_drawn=True)
+        for corners in self.symbol.filled:
+            room.add_line([*corners, corners[0]], is_drawn=True)
 
 
 @dataclass(frozen=True)
@@ -104,9 +115,7 @@ class DimensionLayout:
 
     def all(self) -> list[PlacedDimension]:
         """Return every dimension with its place, those in lanes first."""
-        placed = [one for lane in self.plan.lanes.sides() for one in self._in_lanes(lane)]
-        for one in placed:
-            self._take_lines(one)
+        placed = [one for lane in self.plan.lanes.sides() for one in self.lane(lane)]
         return placed + self.local(self.plan.lanes.local)
 
     def local(self, dimensions: Iterable[Dimension]) -> list[PlacedDimension]:
@@ -146,22 +155,48 @@ class DimensionLayout:
     def _in_lanes(self, lane: Lane) -> Iterator[PlacedDimension]:
         right = self.plan.beside if lane.is_of_end else 0.0
         ends = [sorted(p[lane.along] for p in self._on_paper(one, right)) for one in lane.dimensions]
-        others = [end for pair in ends for end in pair]
-        for one, (low, high) in zip(lane.dimensions, ends, strict=True):
+        reached = [_MOST_LANES] * len(ends)  # the lanes up to which extension lines lead; at first all
+        for n, (one, (low, high)) in enumerate(zip(lane.dimensions, ends, strict=True)):
             label = label_of(one)
-            middle = _middle(low, high, label.width(TEXT), others)
             for number in range(_MOST_LANES):
+                pairs = (pair for pair, reach in zip(ends, reached, strict=True) if reach >= number)
+                others = [end for pair in pairs for end in pair]
                 away = lane.edge + lane.out * (_FIRST + LANE * number) / self.plan.scale
                 place = self.plan.paper((away, away), right)[1 - lane.along]
+                middle = self._middle(label, lane.along, place, (low, high), others)
                 box = self._box_in_lane(label, lane.along, place, (low, high), middle)
                 stem = self._stem(lane, place, (low, high), box, others) if one.name in self.datums else None
                 if self.room.is_clear(box, 0.1) and (stem or one.name not in self.datums):
                     break
             else:
                 self.faults += 1
+            reached[n] = number
             self.room.add(box)
             laned = self._laned(one, label, lane.along, place, (low, high), middle, right)
             yield self._with_datum(laned, stem) if stem else laned
+
+    def _middle(
+        self, label: Label, along: int, place: float, ends: tuple[float, float], others: Sequence[float]
+    ) -> float:
+        """Return the centre of a text along its dimension line: between the ends, or beyond one end.
+
+        It is the nearest place at which the fewest lines cross the text: extension lines of the same side,
+        which are at `others`, and lines that the sheet holds already.
+        """
+        (low, high), width = ends, label.width(TEXT)
+        half, tries = width / 2, list[float]()
+        if width + 2 * _OFF_LINES <= high - low:
+            middle, spare = (low + high) / 2, (high - low - width) / 2 - _OFF_LINES
+            tries = [middle + share * spare for share in (0.0, 0.5, -0.5, 1.0, -1.0)]
+        tries += [at for beyond in _BEYOND for at in (high + beyond + half, low - beyond - half)]
+        reach, top = half + _OFF_LINES - _CENTRED, GAP + label.height(TEXT)
+
+        def crossings(at: float) -> int:
+            sides = (place - top, place - GAP) if along else (place + GAP, place + top)
+            (x, u), (y, v) = (sides, (at - half, at + half))[:: 1 if along else -1]
+            return _crossings(at - reach, at + reach, others) + self.room.is_crossed((x, y, u, v))
+
+        return min(tries, key=crossings)
 
     def _stem(
         self, lane: Lane, place: float, ends: tuple[float, float], own: Rectangle, others: Sequence[float]
@@ -178,8 +213,7 @@ class DimensionLayout:
         return None
 
     def _with_datum(self, placed: PlacedDimension, datum: DatumPlace) -> PlacedDimension:
-        self.room.add(datum.box)
-        self.room.add_line(datum.stem, is_drawn=True)
+        datum.take(self.room)
         return replace(placed, datum=datum)
 
     def _on_paper(self, one: Dimension, right: float) -> list[Point]:
@@ -198,7 +232,7 @@ class DimensionLayout:
         """Return a dimension with its line at a given position in its lane."""
         line = tuple((place, end) if along else (end, place) for end in ends)
         words = None
-        if label.upper or not ends[0] <= middle <= ends[1]:
+        if label.upper or abs(middle - (ends[0] + ends[1]) / 2) > _CENTRED:
             above = GAP + label.height(TEXT) / 2
             words = self.plan.at(*((place - above, middle) if along else (middle, place + above)))
         return PlacedDimension(one, label, self.plan.at(*line[0]), words, right, (line[0], line[1]))
@@ -236,21 +270,32 @@ class DimensionLayout:
                 tries = self._across_angle(one, label, right)
             case _:
                 tries = self._around(one, label, right)
-        is_within = one.measure.form == "angle"
-        about = self._on_paper(one, right)[-1] if is_within else None
-        chosen, first, every = None, None, iter(tries)
-        while chosen is None and (some := [*islice(every, _AT_ONCE)]):
-            first = first or some[0]
-            chosen = next(
-                (each for each in self._free(some, is_within=is_within) if self._is_clear(each, about)), None
-            )
-        self.faults += chosen is None
-        assert first is not None, "there are places on every sheet"
-        box, placed, lines = chosen or first
+        box, placed, lines = self._chosen(iter(tries), one, right)
         self.room.add(box)
         for line in lines:
             self.room.add_line(line, is_drawn=True)
         return placed
+
+    def _chosen(self, tries: Iterator[Try], one: Dimension, right: float) -> Try:
+        """Return the first clear place, or one soon after it whose leader is shorter or crosses less."""
+        is_within = one.measure.form == "angle"
+        about = self._on_paper(one, right)[-1] if is_within else None
+        first, found, looks = None, list[tuple[float, int, Try]](), 0
+        while looks < _LOOKS and (some := [*islice(tries, _AT_ONCE)]):
+            first = first or some[0]
+            for each in self._free(some, is_within=is_within):
+                if self._is_clear(each, about):
+                    if is_within:
+                        return each
+                    found.append((self._cost(each[2][0]), len(found), each))
+            looks += bool(found)
+        self.faults += not found
+        assert first is not None, "there are places on every sheet"
+        return min(found)[2] if found else first
+
+    def _cost(self, leader: Sequence[Point]) -> float:
+        """Return the length of a leader, where each line that it crosses counts as some more length."""
+        return dist(*leader) + CROSSING * self.room.lines_met(*leader)
 
     def _free(self, some: Sequence[Try], *, is_within: bool) -> Iterator[Try]:
         """Yield the places whose words have room, perhaps also within a view."""
@@ -363,20 +408,6 @@ class DimensionLayout:
 
 def _polar(corner: Point, radius: float, turn: float) -> Point:
     return corner[0] + radius * cos(turn), corner[1] + radius * sin(turn)
-
-
-def _middle(low: float, high: float, width: float, others: Sequence[float]) -> float:
-    """Return the centre of a text along its dimension line: between the ends, or beyond one end.
-
-    It is the nearest place at which the fewest extension lines, at `others`, cross the text.
-    """
-    half = width / 2
-    if width + 1.0 <= high - low:
-        middle, spare = (low + high) / 2, (high - low - width) / 2 - 0.5
-        tries = [middle + share * spare for share in (0.0, 0.5, -0.5, 1.0, -1.0)]
-    else:
-        tries = [at for beyond in _BEYOND for at in (high + beyond + half, low - beyond - half)]
-    return min(tries, key=lambda at: _crossings(at - half, at + half, others))
 
 
 def _crossings(low: float, high: float, others: Sequence[float]) -> int:

@@ -6,10 +6,12 @@ import re
 from dataclasses import dataclass
 
 from cad.drafting.letter_width import width_of
+from cad.drafting.measures import Measure
 from cad.drafting.parameter_match import Dimension
 from cad.tolerances import deviations, number_of
 
 SMALL = 0.7  # deviations are of so many times the height of the number
+_EXACT = 1e-9  # [mm]
 _LED = ("circle", "arc", "aligned")
 _STACK = re.compile(r"(?s)(.*)\{\\H0\.7x;\\S([^^]*)\^ ([^;]*);\}(.*)")
 
@@ -50,7 +52,7 @@ def label_of(dimension: Dimension) -> Label:
     is_round = measure.form in ("circle", "arc")  # these have their signs from the DIMENSION
     sign = "Ø" if measure.sort == "diameter" and not is_round else ""
     own = {"circle": "Ø", "arc": "R"}.get(measure.form, "")
-    number = own + number_of(measure.value, 2 if measure.sort == "angle" else 3)
+    number = own + number_of(measure.value, _decimals(measure))
     text = f"{several}{sign}<>{'×45°' if measure.sort == 'chamfer' else ''}"
     if dimension.is_reference:
         return Label(f"({text})", number)
@@ -66,6 +68,14 @@ def label_of(dimension: Dimension) -> Label:
     if measure.form in _LED:  # words at a leader stand on one line
         return Label(f"{text}{zone} {upper}/{lower}", number)
     return Label(f"{text}{zone}", number, upper, lower)
+
+
+def _decimals(measure: Measure) -> int:
+    """Return the most decimals of a number: four for the radius of a diameter of three decimals."""
+    if measure.sort == "angle":
+        return 2
+    is_half = abs(round(2 * measure.value, 3) - 2 * measure.value) < _EXACT
+    return 4 if measure.form == "arc" and is_half else 3
 
 
 def read_stack(mtext: str) -> tuple[str, str, str]:

@@ -69,8 +69,10 @@ class Lanes:
             case "across", "end":
                 return (self.end_above, 1) if self._is_high(one) else (self.end_below, -1)
             case "across", _:
-                is_high = min(y for _, y in measure.points) > middle[1]
-                return (self.above, 1) if is_high and measure.sort == "diameter" else (self.below, -1)
+                feet = [y for _, y in measure.points]
+                if measure.sort != "diameter":
+                    feet = [_edge_at(one, self.section, number)[0] for number in (0, 1)]
+                return (self.above, 1) if min(feet) > middle[1] else (self.below, -1)
         return self.local, 0
 
     def _is_high(self, one: Dimension) -> bool:
@@ -88,17 +90,17 @@ class Lanes:
         return len(self.left), len(self.right), len(self.beyond), min(below, 4), above
 
     def sides(self) -> Iterator[Lane]:
-        """Yield every side with its dimensions."""
+        """Yield every side with its dimensions, those of the end view first."""
         (left, low), (right, high) = self.section.box
         (_, end_low), (end_right, end_high) = self.end.box
         every = (
+            (self.beyond, 1, end_right, 1, True),
+            (self.end_below, 0, end_low, -1, True),
+            (self.end_above, 0, end_high, 1, True),
             (self.left, 1, left, -1, False),
             (self.right, 1, right, 1, False),
-            (self.beyond, 1, end_right, 1, True),
             (self.below, 0, low, -1, False),
-            (self.end_below, 0, end_low, -1, True),
             (self.above, 0, high, 1, False),
-            (self.end_above, 0, end_high, 1, True),
         )
         for side, along, edge, out, is_of_end in every:
             ordered = sorted(side, key=lambda one: (one.measure.value, one.measure.points))

@@ -21,7 +21,7 @@ from cad.step import Body, rigid
 from cad.surfaces import Z
 
 LETTERS = 5.0  # height of the letters that name a section [mm on paper]
-_OVER = 5.0  # of a centre line beyond what it is the centre of [mm on paper]
+_OVER = 3.0  # of a centre line beyond what it is the centre of [mm on paper]
 _LEAST = 0.8  # radius of a circle that gets centre lines [mm on paper]
 _MOST = 80  # centre lines of a view
 _CLEAR = 1e-5
@@ -70,7 +70,9 @@ def pitch_circles(placed: Sequence[PlacedDimension]) -> list[tuple[Point, float]
     return [
         ((one.right, 0.0), one.dimension.measure.value / 2)
         for one in placed
-        if one.dimension.measure.form == "circle" and one.dimension.measure.points[0] == (0.0, 0.0)
+        if one.dimension.measure.form == "circle"
+        and one.dimension.measure.place == "end"
+        and one.dimension.measure.points[0] == (0.0, 0.0)
     ]
 
 

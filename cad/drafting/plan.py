@@ -19,7 +19,7 @@ by how much it grows with each dimension."""
 _LEAST = 0.4  # of that share: views that take less are tried only if no others have room
 _COST = {"A3": 0.0, "A2": 1.0, "A1": 2.0, "A0": 4.0}
 """Of a sheet: the smallest that does is taken, and A0, which no desk holds, only if nothing else does."""
-_EMPTY, _REDUCED = 5.0, 0.5
+_EMPTY, _REDUCED = 4.0, 0.5
 """Cost of a sheet without views, in sheets; smaller views leave it emptier. Cost of a reduced scale."""
 
 _BELOW = 1.8  # of the room above views that have others below them, from below to the middle

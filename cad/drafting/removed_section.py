@@ -105,19 +105,23 @@ def _removed(
     height = sum(factor * length_of(parameters[name]) for name, factor in factors.items())
     frame = Frame(end.frame.right, Y.cross(end.frame.right))  # seen from above
     part, body = next((i, body) for i, body in enumerate(bodies) if body.name == said["of"])
-    faces = faces_across(body.shape.moved(Location(Vector(0, -height, 0))), Y)
-    edges = [edge for face in faces for edge in face.Edges()]
-    curves = [curve_of(edge, frame) for edge in edges]
-    straight = [(c.points[0], c.points[-1]) for c in curves if c.arc is None and len(c.points) == 2]
-    if not straight:
+    view = section_view(part, body, Y, height, frame)
+    if not view.edges:
         return None
-    view = View(frame, curves, [], [], [cut_of(part, face, frame) for face in faces], [], straight)
     wanted = {name: parameters[name] for name in shows if name in parameters}
     leaning = [*_leaning(view, seen[body.name], height)]
     shown = [*_measures(view, seen[body.name], leaning)]
     dimensions, _ = matched(wanted, declared.sizes, shown, declared.limits)
     planes = on(*(plane for _, plane in leaning))
     return RemovedSection(letter, view, height, tuple(dimensions), leaning=planes) if dimensions else None
+
+
+def section_view(part: int, body: Body, axis: Vector, place: float, frame: Frame) -> View:
+    """Return the view of a body's section across an axis, at a place along it [mm]."""
+    faces = faces_across(body.shape.moved(Location(axis * -place)), axis)
+    curves = [curve_of(edge, frame) for face in faces for edge in face.Edges()]
+    straight = [(c.points[0], c.points[-1]) for c in curves if c.arc is None and len(c.points) == 2]
+    return View(frame, curves, [], [], [cut_of(part, face, frame) for face in faces], [], straight)
 
 
 def _leaning(view: View, seen: PartSurfaces, height: float) -> Iterator[tuple[float, Surface]]:
@@ -199,10 +203,49 @@ def _mark_across(page: Page, room: Room, letter: str, station: float, section: V
         room.add(box)
 
 
+@dataclass(frozen=True)
+class Extent:
+    """What a section takes on the paper about its own origin, with its dimensions and its label [mm]."""
+
+    left: float
+    below: float
+    right: float
+    above: float
+    inner: Sequence[Dimension]  # vertical ones whose lines run within the section
+    beside: Sequence[Dimension]  # the other vertical ones
+    label: float  # room for its label and the texts above it
+
+    @staticmethod
+    def of(removed: RemovedSection, plan: Plan) -> Extent:
+        """Return the extent of a section on a plan."""
+        is_across = bool(removed.stations)
+        up = [one for one in removed.dimensions if one.measure.form == "up"]
+        across = [one for one in removed.dimensions if one.measure.form == "across"]
+        inner = [one for one in up if not is_across and _is_within(one, removed.view)]
+        beside = [one for one in up if one not in inner]
+        is_local = len(up) + len(across) < len(removed.dimensions)
+        margin = _MARGIN * 1.5 if is_local else _MARGIN
+        label = _LABEL + max((label_of(one).width(TEXT) for one in inner), default=0.0)
+        (x, y), (right, high) = removed.view.box
+        if is_across:  # its centre lines lead to the axis of the shaft
+            x, y, right, high = min(x, 0.0), min(y, 0.0), max(right, 0.0), max(high, 0.0)
+        return Extent(
+            LANE * len(beside) + margin - x * plan.scale,
+            LANE * len(across) + margin - y * plan.scale,
+            right * plan.scale + margin,
+            high * plan.scale + label,
+            inner,
+            beside,
+            label,
+        )
+
+
 def place(
-    page: Page, room: Room, removed: RemovedSection, placing: DimensionLayout
+    page: Page, room: Room, removed: RemovedSection, placing: DimensionLayout, origin: Point | None = None
 ) -> tuple[list[PlacedDimension], View]:
-    """Draw a section at a free place of the sheet; return its dimensions, and its view there.
+    """Draw a section with its origin at a position on the paper, or at a free place of the sheet.
+
+    Return its dimensions, and its view there.
 
     Raises
     ------
@@ -210,18 +253,12 @@ def place(
         If the sheet has no free place for it.
     """
     plan = page.plan
-    lanes = {form: [d for d in removed.dimensions if d.measure.form == form] for form in ("across", "up")}
     is_across = bool(removed.stations)
-    inner = [one for one in lanes["up"] if not is_across and _is_within(one, removed.view)]
-    beside = [one for one in lanes["up"] if one not in inner]
-    local = [one for one in removed.dimensions if one.measure.form not in lanes]
-    margin = _MARGIN * 1.5 if local else _MARGIN
-    sides = LANE * len(beside) + margin, LANE * len(lanes["across"]) + margin
-    above = _LABEL + max((label_of(one).width(TEXT) for one in inner), default=0.0)
-    left, low = _found(plan, room, removed, (*sides, above, margin))
-    (x, y), _ = removed.view.box
-    corner = plan.at(left + sides[0], low + sides[1])
-    shift = corner[0] - x, corner[1] - y
+    extent = Extent.of(removed, plan)
+    shift = plan.at(*(origin or _found(plan, room, removed, extent)))
+    inner, beside, above = extent.inner, extent.beside, extent.label
+    level = [one for one in removed.dimensions if one.measure.form == "across"]
+    local = [one for one in removed.dimensions if one.measure.form not in ("across", "up")]
     view = _shifted(removed.view, shift)
     (x, y), (right, high) = view.box
     room.add_view(
@@ -239,7 +276,7 @@ def place(
         ],
         [],
     )
-    across, up = ([_moved(one, shift) for one in some] for some in (lanes["across"], beside))
+    across, up = ([_moved(one, shift) for one in some] for some in (level, beside))
     placed = [
         *placing.lane(Lane(_by_size(across), 0, y, -1, False)),
         *placing.lane(Lane(_by_size(up), 1, x, -1, False)),
@@ -261,16 +298,10 @@ def _is_within(one: Dimension, view: View) -> bool:
     return min(x for x, _ in one.measure.points) > view.box[0][0] + CLEAR
 
 
-def _found(
-    plan: Plan, room: Room, removed: RemovedSection, sides: tuple[float, float, float, float]
-) -> Point:
-    """Lower left corner of the nearest free place for a section with its dimensions [mm on paper]."""
-    (x, y), (right, high) = removed.view.box
-    width = sides[0] + (right - x) * plan.scale + sides[3]
-    height = sides[1] + (high - y) * plan.scale + sides[2]
-    near = plan.paper((right, removed.height), plan.beside)
-    if removed.stations:
-        near = plan.paper((removed.stations[0], 0.0))[0] - width / 2, room.area[1]
+def _found(plan: Plan, room: Room, removed: RemovedSection, extent: Extent) -> Point:
+    """Return the origin of a section with its dimensions at the nearest free place [mm on paper]."""
+    width, height = extent.left + extent.right, extent.below + extent.above
+    near = plan.paper((removed.view.box[1][0], removed.height), plan.beside)
 
     def away(corner: Point) -> float:
         return abs(corner[0] - near[0]) + abs(corner[1] + height / 2 - near[1])
@@ -281,7 +312,8 @@ def _found(
     for start in range(0, len(corners), _AT_ONCE):
         free = np.flatnonzero(room.free(boxes[start : start + _AT_ONCE]))
         if len(free):
-            return corners[start + int(free[0])]
+            left, low = corners[start + int(free[0])]
+            return left + extent.left, low + extent.below
     raise NoRoom
 
 

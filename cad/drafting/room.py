@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
+from math import dist
 
 import numpy as np
 
@@ -14,6 +15,10 @@ Rectangle = tuple[float, float, float, float]
 
 _STRIPS = 40  # of a view, in which words keep off its lines
 _APART = 0.8  # between two texts, and between a text and a line [mm on paper]
+_BESIDE, _PARALLEL = 1.3, 0.06
+"""A leader runs along a line that is so near [mm on paper], and leads away by so little of its length."""
+_LONG = 5.0  # a piece of an outline along which a leader may run [mm on paper]
+_LIKE = 3  # crossings: to run along a line is as bad
 
 
 class _Rows:
@@ -44,12 +49,18 @@ class Room:
         self.leaders: list[list[Point]] = []
         self._boxes, self._words, self._lines = _Rows(), _Rows(), _Rows()
         self._drawn = _Rows()  # lines of dimensions, leaders and frames
-        self._outlines = _Rows()  # of views
+        self._outlines, self._long = _Rows(), _Rows()  # of views: all pieces, and the long ones
 
     @property
     def words(self) -> list[Rectangle]:
         """Return the rectangles of texts and symbols."""
         return self._words.rows
+
+    @property
+    def lowest(self) -> float:
+        """Return the height of the lowest rectangle or line."""
+        lows = (self._boxes.array[:, 1], self._lines.array[:, [1, 3]])
+        return float(min(some.min(initial=self.area[3]) for some in lows))
 
     def add(self, box: Rectangle, *, is_view: bool = False) -> None:
         """Occupy a rectangle; lines to a part's faces cross only that of a view."""
@@ -92,6 +103,9 @@ class Room:
     def add_outline(self, points: Sequence[Point]) -> None:
         """Keep a line of a view, which words within that view avoid."""
         self._outlines.add_line(points)
+        for one, other in pairwise(points):
+            if dist(one, other) > _LONG:
+                self._long.add_line([one, other])
 
     def is_free_within(self, box: Rectangle) -> bool:
         """Return whether a rectangle within a view is clear of its lines, of words and of other lines."""
@@ -139,9 +153,14 @@ class Room:
         foreign = [box for box in self.views if not _is_in(about, box)]
         return not any(crossed(_pieces(line), box).any() for box in foreign)
 
-    def outlines_met(self, one: Point, other: Point) -> int:
-        """Return how many pieces of outlines a straight line crosses."""
-        return int(_meet(np.array([*one, *other]), self._outlines.array).sum())
+    def lines_met(self, one: Point, other: Point) -> int:
+        """Return how many outlines, extension lines and centre lines a straight line crosses.
+
+        One that it runs along counts as several.
+        """
+        piece = np.array([*one, *other])
+        met = sum(int(_meet(piece, some.array).sum()) for some in (self._outlines, self._lines))
+        return met + _LIKE * any(_along(piece, some.array).any() for some in (self._long, self._lines))
 
     def first(self, boxes: Iterable[tuple[Rectangle, Point]]) -> Point | None:
         """Occupy the first free rectangle, and return its point."""
@@ -150,6 +169,10 @@ class Room:
                 self.add(box)
                 return point
         return None
+
+    def is_crossed(self, box: Rectangle) -> bool:
+        """Return whether a line crosses a rectangle or comes near it."""
+        return bool(self._is_crossed(np.array([box]))[0])
 
     def _is_crossed(self, boxes: np.ndarray) -> np.ndarray:
         """Return which rectangles a line crosses."""
@@ -177,6 +200,19 @@ def _meet(piece: np.ndarray, lines: np.ndarray) -> np.ndarray:
     own = (starts[:, 0] * ways[:, 1] - starts[:, 1] * ways[:, 0]) / across
     other = (starts[:, 0] * away[1] - starts[:, 1] * away[0]) / across
     result: np.ndarray = (own > 0.01) & (own < 0.99) & (other > 0.0) & (other < 1.0)
+    return result
+
+
+def _along(piece: np.ndarray, lines: np.ndarray) -> np.ndarray:
+    """Return which segments (n, 4) a segment runs along: nearly parallel, and beside it for over 1 mm."""
+    away = piece[2:] - piece[:2]
+    size = max(float(np.hypot(*away)), 1e-12)
+    way = away / size
+    ends = (lines.reshape(-1, 2, 2) - piece[:2]) @ np.stack([way, (-way[1], way[0])], axis=1)
+    along, off = ends[..., 0], ends[..., 1]
+    shared = np.minimum(along.max(axis=1), size) - np.maximum(along.min(axis=1), 0.0)
+    rise = np.abs(off[:, 1] - off[:, 0]) < _PARALLEL * np.abs(along[:, 1] - along[:, 0])
+    result: np.ndarray = rise & (np.abs(off).min(axis=1) < _BESIDE) & (shared > 1.0)
     return result
 
 

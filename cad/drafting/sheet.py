@@ -26,6 +26,7 @@ from cad.drafting.page import Page, document_of
 from cad.drafting.plan import Plan
 from cad.drafting.removed_section import mark, place
 from cad.drafting.room import Rectangle, Room
+from cad.drafting.section_rows import in_rows
 from cad.drafting.sheet_border import General, SheetNumber, frame, notes, parts_list, table, title_block
 from cad.drafting.title import general_profile
 from cad.drafting.views import View, is_assembly
@@ -36,6 +37,7 @@ from cad.surfaces import PartSurfaces
 
 _MOST_PLANS = 8  # sheets and scales that are tried
 _MOST_FAULTS = 1000
+_MORE_PLANS = 2  # that are tried after one on which some leaders cross many lines
 _FEW_FAULTS = 4  # of a sheet with removed sections, rather than one without them
 
 
@@ -71,7 +73,10 @@ def _no_times() -> Iterator[None]:
 
 @dataclass(frozen=True)
 class Laid:
-    """A sheet on which everything has a place; `faults` counts places that are not free."""
+    """A sheet on which everything has a place.
+
+    `faults` counts places that are not free, `crossed` leaders across many lines.
+    """
 
     page: Page
     room: Room
@@ -79,6 +84,7 @@ class Laid:
     placed: Sequence[PlacedDimension]
     datum: str
     faults: int
+    crossed: int
 
 
 def draw(bodies: Sequence[Body], header: Header | None, whole: Sequence[Body] = ()) -> tuple[Drawing, Format]:
@@ -113,21 +119,25 @@ def laid_out(
 ) -> tuple[Content, Laid]:
     """Return the first sheet on which everything has a free place, else that with the fewest faults.
 
-    Sheets without removed sections come last, unless those with them have many faults.
+    Of the first such sheets, that is taken on which the fewest leaders cross many lines. Sheets without
+    removed sections come last, unless those with them have many faults.
     """
     every: list[tuple[Content, Laid]] = []
     for content in contents(bodies, seen, header, declared):
         if any(laid.faults <= _FEW_FAULTS for _, laid in every):
             break
+        more = _MORE_PLANS
         for plan in islice(content.plans(), _MOST_PLANS):
-            most = min((laid.faults for _, laid in every), default=_MOST_FAULTS)
+            most = max(min((laid.faults for _, laid in every), default=_MOST_FAULTS), 1)
             try:
                 every.append((content, _laid(content, bodies, declared, plan, most)))
             except NoRoom:
-                continue
-            if every[-1][1].faults == 0:
-                return every[-1]
-    return min(every, key=lambda one: one[1].faults)
+                pass
+            best = min((laid.faults, laid.crossed) for _, laid in every) if every else (1, 0)
+            if best == (0, 0) or (best[0] == 0 and more == 0):
+                break
+            more -= best[0] == 0
+    return min(every, key=lambda one: (one[1].faults, one[1].crossed))
 
 
 def _laid(
@@ -149,17 +159,19 @@ def _laid(
     placing = DimensionLayout(plan, room, declared.datums)
     placed = placing.all()
     views = [(content.section, 0.0), (content.end, plan.beside)]
+    origins = in_rows(plan, room, content.removed)
     for one in content.removed:
-        dimensions, view = place(page, room, one, placing)
+        dimensions, view = place(page, room, one, placing, origins.get(one.letter))
         placed += dimensions
         views.append((view, 0.0))
     if placing.faults >= most:
         raise NoRoom
     controls = Controls(page, room, views, most - placing.faults)
-    datum = controls.draw(declared, placed)
     for number, view, target in balloons(content.section, content.end, bodies):
         controls.balloon(str(number), plan.paper(target, plan.beside if view is content.end else 0.0))
-    return Laid(page, room, centres, placed, datum, placing.faults + controls.faults)
+    datum = controls.draw(declared, placed)
+    faults = placing.faults + controls.faults
+    return Laid(page, room, centres, placed, datum, faults, controls.crossed)
 
 
 def _fill(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from math import cos, dist, pi, sin
+from math import cos, dist, inf, pi, radians, sin
 
 from cad.drafting.curves import Point
 from cad.drafting.dimension_layout import PlacedDimension
@@ -38,8 +38,28 @@ def targets(placed: PlacedDimension, views: Sequence[tuple[View, float]], plan: 
     if not on_edges:
         unseen = [edge for view, right in views if right == placed.right for edge in view.unseen]
         on_edges = [p for point in every for p in _on_edges(point, placed, unseen, plan, along)]
-    found += on_edges
+    if not on_edges:
+        homes = [view for view, right in views if right == placed.right and _holds(view, measure.points[0])]
+        straight = [edge for view in homes for edge in view.straight]
+        on_edges = [p for q in measure.points for p in _on_edges(q, placed, straight, plan, along, inf)]
+    found += [*on_edges, *_on_arcs(placed, views, plan)]
     return found or [plan.paper(point, placed.right) for point in measure.points]
+
+
+def _on_arcs(placed: PlacedDimension, views: Sequence[tuple[View, float]], plan: Plan) -> Iterator[Point]:
+    """Yield places on the visible arcs of a diameter that is measured across them, as of half a bore."""
+    measure = placed.dimension.measure
+    if (measure.sort, measure.form, measure.place) != ("diameter", "across", "end"):
+        return
+    (x, _), (u, _) = measure.points
+    curves = (curve for view, right in views if right == placed.right for curve in view.visible)
+    for arc in (curve.arc for curve in curves if curve.arc):
+        is_same = abs(2 * arc.radius - measure.value) < _CLEAR and abs(arc.centre[0] - (x + u) / 2) < _CLEAR
+        if is_same and not arc.is_whole:
+            for share in _SHARES:
+                turn = radians(arc.start + share * arc.turn)
+                on = arc.centre[0] + arc.radius * cos(turn), arc.centre[1] + arc.radius * sin(turn)
+                yield plan.paper(on, placed.right)
 
 
 def _on_extension(point: Point, placed: PlacedDimension, plan: Plan, along: int) -> Iterator[Point]:
@@ -53,15 +73,25 @@ def _on_extension(point: Point, placed: PlacedDimension, plan: Plan, along: int)
             yield (place, at) if along else (at, place)
 
 
+def _holds(view: View, point: Point) -> bool:
+    (left, low), (right, high) = view.box
+    return left - _CLEAR < point[0] < right + _CLEAR and low - _CLEAR < point[1] < high + _CLEAR
+
+
 def _on_edges(
-    point: Point, placed: PlacedDimension, edges: Sequence[tuple[Point, Point]], plan: Plan, along: int
+    point: Point,
+    placed: PlacedDimension,
+    edges: Sequence[tuple[Point, Point]],
+    plan: Plan,
+    along: int,
+    reach: float = _CLEAR,
 ) -> Iterator[Point]:
-    """Yield places on the straight edges that touch a point, off their ends."""
+    """Yield places on the straight edges that touch a point, or are at its level within a reach [mm]."""
     at, across = point[along], point[1 - along]
     for one, other in edges:
         low, high = sorted((one[1 - along], other[1 - along]))
         is_level = abs(one[along] - at) + abs(other[along] - at) < _CLEAR
-        if is_level and low - _CLEAR < across < high + _CLEAR:
+        if is_level and low - reach < across < high + reach:
             for share in _SHARES:
                 place = low + share * (high - low)
                 yield plan.paper((place, at) if along else (at, place), placed.right)

@@ -371,9 +371,9 @@ def test_lengths_that_repeat_are_given_once_and_counted() -> None:
 def test_a_leader_keeps_out_of_the_views_where_it_can() -> None:
     room = Room((0, 0, 100, 100))
     room.add_outline([(20, 20), (60, 20), (60, 60), (20, 60), (20, 20)])
-    assert room.outlines_met((30, 50), (30, 90)) == 1
-    assert room.outlines_met((0, 40), (100, 40)) == 2
-    assert room.outlines_met((0, 70), (100, 70)) == 0
+    assert room.lines_met((30, 50), (30, 90)) == 1
+    assert room.lines_met((0, 40), (100, 40)) == 2
+    assert room.lines_met((0, 70), (100, 70)) == 0
 
 
 @pytest.mark.slow

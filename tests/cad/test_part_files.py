@@ -1,6 +1,7 @@
 """3MF, BREP and files of one part: closed, with the right volumes, positions and names."""
 
 import io
+import re
 import struct
 from zipfile import ZipFile
 
@@ -13,9 +14,13 @@ from slow_models import DRAWN, quick_for
 from cad.errors import GeometryError
 from cad.export import derive
 from cad.file_kinds import BY_PART, plain_kind, with_deflection, with_part
+from cad.header import ONLY_PART, read_header
 from cad.inspect import bounding_box, measure
 from cad.mesh import closed_mesh
 from cad.model import STEEL
+from cad.regenerate import as_text, regenerate_class
+from cad.stamp import Stamp, is_copy, stamped
+from cad.statements import read_statements
 from cad.step import Body, read_step
 from templates.core.errors import InvalidInputs
 
@@ -114,12 +119,53 @@ def test_options_are_read_back_from_a_kind():
     assert {plain_kind(with_part(kind, "a#b")) for kind in BY_PART} == set(BY_PART)
 
 
-@pytest.mark.parametrize("kind", ["step", "svg", "png"])
+@quick_for(("connecting_rod", 1))
+def test_a_step_file_of_one_part_holds_its_solid_its_tolerances_and_its_properties(model):
+    """The stamp writes material and mass; every tolerance on faces is in the file of its part."""
+    texts = as_text(model.from_quantities(model.example))
+    for name, text in texts.items():
+        if name in model.toleranced and not text.startswith(("0 ", "[")):
+            texts[name] = f"{text} +0.05/-0.01 mm"
+    build = regenerate_class(model, texts)
+    found = set()
+    for body in read_step(build.step):
+        data = derive(build.step, with_part("step", body.name))
+        assert data == derive(build.step, with_part("step", body.name))
+        (alone,) = read_step(data)
+        assert (alone.name, len(alone.places), alone.places[0].toTuple()) == (body.name, 1, ((0,) * 3,) * 2)
+        assert alone.colour == pytest.approx(body.colour, abs=1e-6)
+        assert alone.shape.Volume() == pytest.approx(body.shape.Volume(), rel=1e-9)
+        assert len(alone.shape.Faces()) == len(body.shape.Faces())
+        header = read_header(data)
+        assert (header.build, header.parameters[ONLY_PART]) == (build.key, body.name)
+        stated = [(one.kind, one.name) for one in read_statements(data)]
+        assert ("volume", body.name) in stated
+        found.update(name.removesuffix("/2") for kind, name in set(stated) if kind == "dimension")
+        stamp = Stamp("My engine", "rod", 3, "2026-01-02", build.materials, part=body.name)
+        copy = stamped(data, "step", stamp)
+        assert is_copy(copy, data)
+        ((id, name, said),) = re.findall(rb"= PRODUCT\('([^']*)',\s*'([^']*)',\s*'([^']*)'", copy)
+        assert (id.decode(), name.decode()) == (f"My_engine_rod_{body.name}", body.name)
+        density = float(re.search(r"([0-9.]+) kg/m", build.materials[body.name])[1])
+        mass = float(re.search(rb"mass ([0-9.e+-]+) kg", said)[1])
+        assert mass == pytest.approx(density * body.shape.Volume() * 1e-9, rel=1e-3)
+        assert build.materials[body.name].partition(" (")[0].encode() in said
+        assert b"_FORMATION('3'" in copy
+    carried = {name for name, place in build.tolerances.items() if place.faces}
+    assert carried - of_several_parts(build) <= found <= carried
+
+
+def of_several_parts(build):
+    """The parameters whose sizes are on faces of several parts, perhaps between two of them."""
+    return {name for name, place in build.tolerances.items() if len({part for part, _ in place.faces}) > 1}
+
+
+@pytest.mark.parametrize("kind", ["validated.step", "svg", "png"])
 def test_a_kind_that_always_holds_all_parts_refuses_one(kind):
     with pytest.raises(InvalidInputs) as refused:
         with_part(kind, "ball")
     assert [(fault.name, fault.code) for fault in refused.value.faults] == [("part", "not_offered")]
-    assert "glb, stl, 3mf, brep" in refused.value.faults[0].detail
+    assert "step, glb, stl, 3mf, brep" in refused.value.faults[0].detail
 
 
 def test_an_unknown_part_is_refused_with_the_names_of_all(example_of):

@@ -15,6 +15,7 @@ from cad.catalogue import models
 from cad.drafting.content import content_of
 from cad.errors import GeometryError
 from cad.export import derive
+from cad.file_kinds import bodies_of
 from cad.header import read_header
 from cad.pmi import on_faces
 from cad.regenerate import as_quantities, as_text, build_key, regenerate_class
@@ -55,11 +56,13 @@ def test_faces_carry_every_length_that_a_face_or_a_pair_of_faces_has(model):
 def test_the_file_and_the_drawing_state_every_tolerance_that_faces_carry(model):
     build = regenerate_class(model, toleranced(model))
     carried = {name for name, place in build.tolerances.items() if place.faces}
-    content = content_of(read_step(build.step), read_header(build.step))
+    whole, header = read_step(build.step), read_header(build.step)
+    content = content_of(whole, header)
+    parts = [content_of(bodies_of(f"dxf#{body.name}", whole), header, whole) for body in whole]
     assert build.tolerances.keys() == set(lengths(model))
     assert {one.name.removesuffix("/2") for one in File(build.step).dimensions()} == carried
     assert {n for n, place in build.tolerances.items() if place.drawn == "dimension"} == carried
-    assert drawn(content) == carried
+    assert set().union(*map(drawn, [content, *parts])) == carried  # a bolt has its sizes on its own sheet
     assert set(lengths(model)) - carried <= set(content.unseen)
 
 

@@ -65,8 +65,8 @@ def place_faults(
 ) -> Iterator[Fault]:
     """Yield the faults of places that cannot vary, and of places whose relation cannot be set aside."""
     for reference in set_aside:
-        cell = graph.cell(reference)
-        if reference not in varied:
+        cell, block = graph.cell(reference), graph.blocks.get(reference.block)
+        if reference not in varied or (block and block.is_worksheet):
             yield Fault(str(reference), "not_varied", f"{reference} cannot vary here")
         elif cell is None or not cell.relations:
             yield Fault(
@@ -99,7 +99,8 @@ def _followed(cell: Cell) -> str:
 
 
 def _places(graph: Graph) -> list[str]:
-    inputs = (f"{block.name}.{name}" for block in graph.blocks.values() for name in block.cls.inputs)
+    blocks = (block for block in graph.blocks.values() if not block.is_worksheet)
+    inputs = (f"{block.name}.{name}" for block in blocks for name in block.cls.inputs)
     return [*graph.parameters, *inputs]
 
 

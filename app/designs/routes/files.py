@@ -76,8 +76,8 @@ PartName = Annotated[
     str | None,
     Query(
         max_length=120,
-        description="of GLB, STL, 3MF, BREP and drawings, the one part of an assembly that the file holds, "
-        "in its own coordinates; without it the file holds all parts at their positions",
+        description="of STEP, GLB, STL, 3MF, BREP and drawings, the one part of an assembly that the "
+        "file holds, in its own coordinates; without it the file holds all parts at their positions",
         examples=["upper_shell"],
     ),
 ]

@@ -16,6 +16,7 @@ from app.calculations.schemas.evaluations import (
     UsedInput,
     WorkedFormula,
 )
+from app.designs.schemas.worksheets import DesignLine, DesignWorksheet
 from app.identity.schemas.principals import Author
 from app.schemas.answers import Answer, Page, Quantity, Shown, Version, Warning
 from app.schemas.approval_steps import ApprovalState
@@ -144,6 +145,7 @@ class Design(Answer):
     assumed: dict[str, DesignAssumption] = Field(
         {}, description="parameters whose values were proposed and not changed; absent if there are none"
     )
+    worksheet: str = Field("", description="lines that use values of the design; absent if there are none")
     results: DesignResults | None = Field(
         None, description="absent while the design is calculated, if it failed, and with `return=minimal`"
     )
@@ -249,6 +251,9 @@ class Revision(Answer):
         {}, description="parameters whose values were proposed and not changed; absent if there are none"
     )
     rounded: list[RoundedValue] = Field([], description="rounded values; absent if there are none")
+    worksheet: DesignWorksheet | None = Field(
+        None, description="the lines of the design's worksheet; absent if it has none"
+    )
     warnings: list[Warning] = Field(
         [], description="warnings about parameters of the design and of its models"
     )
@@ -324,6 +329,7 @@ class Preview(Answer):
     steps: dict[str, PreviewedStep] | None = None
     parameters: dict[str, Shown] | None = Field(None, description="values of the design's parameters")
     rounded: list[RoundedValue] = Field([], description="rounded values; absent if there are none")
+    worksheet: list[DesignLine] = Field([], description="lines of the worksheet; absent if there are none")
     criteria: list[Criterion] | None = Field(None, description="worst first; absent if there are none")
     verdict: Verdict | None = Field(None, description="verdict over all criteria; absent without criteria")
 

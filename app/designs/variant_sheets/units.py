@@ -22,6 +22,7 @@ def units_of(network: Network) -> Units:
     sizes = (
         (block.name, other, name)
         for block in network.blocks.values()
+        if not block.is_worksheet
         for other, name in other_sizes(block.cls)
     )
     return declared | {f"{block}.{other}": declared[f"{block}.{name}"] for block, other, name in sizes}

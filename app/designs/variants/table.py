@@ -101,12 +101,16 @@ def is_place(network: Network, place: str) -> bool:
     if reference.output is None:
         return reference.block in network.parameters
     block = network.blocks.get(reference.block)
-    return block is not None and reference.analysis is None and reference.output in block.cls.inputs
+    if block is None or block.is_worksheet:
+        return False
+    return reference.analysis is None and reference.output in block.cls.inputs
 
 
 def places(network: Network) -> Iterator[str]:
     """Yield every place that a variant may override."""
     yield from network.parameters
     yield from chain.from_iterable(
-        (f"{block.name}.{name}" for name in block.cls.inputs) for block in network.blocks.values()
+        (f"{block.name}.{name}" for name in block.cls.inputs)
+        for block in network.blocks.values()
+        if not block.is_worksheet
     )

@@ -24,7 +24,7 @@ from app.web.design.page import design_page
 from app.web.gallery.gallery import GALLERY
 from app.web.new_step.routes import NewStep, address, beside, new_step, step_page, versioned
 from app.web.shared.blocks import Refusal
-from app.web.shared.forms import Patch, fields, forms_only, inner, kept, patch_of
+from app.web.shared.forms import Patch, fields, forms_only, inner, kept, lines_of, patch_of
 from app.web.shared.paths import Id, Number
 from app.web.shared.responses import go
 from app.web.shared.services import PageServices, Refused, ThePageServices
@@ -101,7 +101,7 @@ async def save(id: Id, request: Request, services: ThePageServices) -> Response:
     try:
         if based != str(design.revision):
             raise Refused.because(STALE, f"revision {design.revision} was saved in the meantime")
-        await services.change(id, based, patch, typed.get("note", ""))
+        await services.change(id, based, {**patch, **lines_of(typed)}, typed.get("note", ""))
     except Refused as refused:
         return await _again(request, services, id, typed, refused)
     return go(f"/designs/{id}")

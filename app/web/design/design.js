@@ -10,6 +10,7 @@ import { startLater } from "../shared/later.js";
 import { startLists } from "../lists/lists.js";
 import { live } from "../shared/live.js";
 import { Names } from "./names.js";
+import { OwnLines, namesOf } from "./own_lines.js";
 import { showParameters, showValues } from "./parameters.js";
 import { startPicker } from "./picker.js";
 import { drawPictures } from "../plots/pictures.js";
@@ -29,6 +30,7 @@ const { design: id, revision } = form.dataset;
 const api = `/api/v1/designs/${id}`;
 const namesHere = document.querySelector("[data-names]").value; // for a long design they are fetched
 const names = new Names(JSON.parse(namesHere || "[]"));
+const lines = new OwnLines(document.querySelector("[data-own-lines]"), names);
 const watches = []; // functions that set up fields added later
 const draft = new Draft(form, JSON.parse(form.querySelector("[name=was]").value));
 const models = new Set([...document.querySelectorAll("[data-model]")].map((part) => part.dataset.model));
@@ -78,6 +80,7 @@ function show(payload) {
   steps = payload.steps;
   rounded = new Map((payload.rounded ?? []).map((row) => [row.name, row]));
   names.update(payload);
+  lines.show(payload);
   ofVariants?.classList.toggle("outdated", draft.isChanged());
   if (isJudged || draft.isChanged()) showVerdict(payload);
   for (const [step, answer] of Object.entries(steps)) {
@@ -113,7 +116,7 @@ function refusePreview(error) {
 function refuse(error) {
   state.textContent = "";
   if (!(error instanceof Refused)) return tell(`The service does not answer: ${error.message}`);
-  const loose = showFaults(form, error.faults);
+  const loose = showFaults(form, lines.takeFaults(error.faults));
   if (error.status !== CONFLICT) state.replaceChildren("not accepted: see the message beside ", ...linksToFaults());
   if (loose.size || !error.faults.size) tell([...loose.values()].join("; ") || error.message);
 }
@@ -242,7 +245,7 @@ async function start() {
   startTolerances(api, patch);
   startLater(form, adopt);
   if (!namesHere) await fetchNames();
-  watches.push(startPicker(form, names), startCompletion(form, names));
+  watches.push(startPicker(form, names), startCompletion(form, namesOf(names, lines)));
   startDrives();
   const from = draft.restore();
   if (from !== null) showDraft();

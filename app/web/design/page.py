@@ -34,6 +34,7 @@ from app.solids.schemas.analyses import Analysis
 from app.solids.schemas.models import CadModel as Model
 from app.web.design.declarations import analysis_lines, errors_of, iteration_lines, measures
 from app.web.design.flow import drawing
+from app.web.design.own_lines import own_lines
 from app.web.design.sections import (
     MOST_IN_FULL,
     asked_step,
@@ -139,6 +140,7 @@ async def design_page(
         base=f"/api/v1/designs/{id}",
         painted=painted(steps, parts),
         was=_as_typed(design),
+        own_lines=own_lines(design, revision, refusal),
         choices=await _choices(services),
         analysis_lines=analysis_lines(design, parts, refusal),
         iteration_lines=iteration_lines(design, refusal),

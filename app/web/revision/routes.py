@@ -14,7 +14,9 @@ from fastapi import APIRouter, Query, Request, Response
 from app.designs.routes.revisions import show_revision
 from app.designs.schemas.designs import Revision, RevisionWorksheet
 from app.presentation import numbers
+from app.reports.worksheet import plots_of
 from app.schemas.answers import Answer
+from app.web.design.own_lines import rows_of
 from app.web.shared.blocks import models_of, steps_of
 from app.web.shared.design_answers import (
     approval_of,
@@ -61,6 +63,8 @@ async def revision_page(
         revision=revision,
         steps=steps_of(revision, templates),
         models=models_of(revision, await described_models(services, revision)),
+        lines=rows_of(revision),
+        plots=plots_of(revision),
         against=against,
         differences=differences(against, revision) if against else [],
         kinds=list(MEDIA_TYPES),
@@ -97,6 +101,9 @@ def _values(revision: Revision) -> Iterator[tuple[str, object]]:
     for name, step in revision.steps.items():
         for part in (step.inputs, step.outputs):
             yield from ((f"{name}.{tail}", _comparable(value)) for tail, value in part.items())
+    for line in revision.worksheet.lines if revision.worksheet else ():
+        if line.name and line.value:
+            yield line.name, _comparable(line.value)
     for name, model in revision.models.items():
         yield from ((f"{name}.{tail}", _comparable(value)) for tail, value in model.parameters.items())
         yield from ((f"{name}.{tail} (relation)", value) for tail, value in model.relations.items())

@@ -18,6 +18,7 @@ from urllib.parse import parse_qsl
 from fastapi import Request
 from pydantic import JsonValue, TypeAdapter
 
+from app.designs.document import WORKSHEET
 from app.designs.schemas.designs import Design
 from app.http.access import FORM_TOKEN
 from app.http.limits import BodyTooLarge
@@ -82,13 +83,22 @@ def patch_of(design: Names, typed: Mapping[str, str]) -> Patch:
     return patch
 
 
+def lines_of(typed: Mapping[str, str]) -> dict[str, JsonValue]:
+    """Return the merge patch of the design's worksheet; empty if its text was not changed."""
+    text = kept(typed).get(WORKSHEET)
+    if text is None:
+        return {}
+    return {WORKSHEET: text if text.strip() else None}
+
+
 def kept(typed: Mapping[str, str]) -> dict[str, str]:
     """Return the fields that differ from the form's initial state, which its hidden field `was` stores."""
     try:
         old = _WAS.validate_json(typed.get("was", "{}"))
     except ValueError:
         old = {}
-    return {name: text for name, text in typed.items() if text.strip() != str(old.get(name, "")).strip()}
+    texts = {name: text.replace("\r\n", "\n") for name, text in typed.items()}
+    return {name: text for name, text in texts.items() if text.strip() != str(old.get(name, "")).strip()}
 
 
 def _is_field(design: Names, blocks: Set[str], name: str) -> bool:
@@ -116,7 +126,7 @@ def texts(design: Design) -> dict[str, str]:
     for name, step in design.steps.items():
         fields |= {f"{name}@{LIMITS}{tail}": text_of(value) for tail, value in step.limits.items()}
         fields |= {f"{name}@level": text_of(step.level), f"{name}@tolerance": text_of(step.tolerance)}
-    return fields
+    return {**fields, WORKSHEET: design.worksheet}
 
 
 def _put(patch: Patch, design: Names, name: str, value: JsonValue) -> None:

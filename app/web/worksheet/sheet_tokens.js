@@ -12,7 +12,7 @@ const INSIDE = ["if", "not"];
 const BETWEEN = ["then", "else", "and", "or", "is", "to", "so that", "from", "with", "gives", "within", "over"];
 const CLAUSES = ["source", "symbol", "remedy", "also", "example", "published", "held"];
 const FUNCTIONS = ["sqrt", "exp", "log", "log10", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "abs", "floor", "ceil", "min", "max", "sum", "mean", "count"];
-const WORDS = new Set([...Object.keys(STATEMENTS), ...INSIDE, ...BETWEEN, "so", "that"]);
+const WORDS = new Set([...Object.keys(STATEMENTS), "plot", ...INSIDE, ...BETWEEN, "so", "that"]);
 const UNITS = (
   "mm cm m um in ft mil N kN MN lbf Pa kPa MPa GPa bar psi N*m kN*m J kJ W kW hp kg g t kg/m**3 s min h rpm rad/s rev/s turn deg rad " +
   "Hz m/s mm/s m/s**2 mm**2 m**2 mm**3 m**3 mm**4 K degC degF delta_degC delta_degF 1/K Pa*s mPa*s mm**2/s cSt l/min W/(m*K) J/(kg*K) A V % 1"

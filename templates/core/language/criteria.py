@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import lru_cache, reduce
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -115,19 +115,19 @@ def _instead(evaluated: EvaluatedValues, criterion: Criterion) -> Instead | None
 def judged_alone(evaluated: EvaluatedValues, criterion: Criterion) -> Judgement:
     """Return the judgement of one criterion whose outputs were evaluated."""
     estimates, absent = estimates_of(evaluated, criterion)
-    subject = criterion.subject or ""
-    shown = evaluated.shown_in[subject].text if subject in evaluated.shown_in else None
+    shown = evaluated.shown_in.get(criterion.subject or "")
+    unit_name = shown.text if shown else None
     template = evaluated.template
     along = None if template._curves.isdisjoint(criterion.names) else along_of(template, criterion.names)
-    more = notes(evaluated, criterion)
+    noted = notes(evaluated, criterion)
     instead = _instead(evaluated, criterion) if criterion.absent else None
-    return judge(criterion, estimates, absent, along, shown, noted=more, instead=instead)
+    return judge(criterion, estimates, absent, along, unit_name, noted=noted, instead=instead)
 
 
 def notes(evaluated: EvaluatedValues, criterion: Criterion) -> dict[str, str | None]:
-    """Return the fields of a judgement that name its level, the truth of its error, and its sources."""
-    source = _with_those_of_limits(evaluated, criterion) if evaluated.limits else criterion.source
-    return {**level_and_truth(evaluated, criterion.subject), "source": source}
+    """Return the fields of a judgement that name its level, the truth of its error, and sources of limits."""
+    noted = level_and_truth(evaluated, criterion.subject)
+    return noted | {"source": _with_those_of_limits(evaluated, criterion)} if evaluated.limits else noted
 
 
 def level_and_truth(evaluated: EvaluatedValues, output: str | None) -> dict[str, str | None]:
@@ -216,7 +216,6 @@ def _default(evaluated: EvaluatedValues, limit: Limit) -> Estimate | Absent:
     return _not_given(limit)
 
 
-@lru_cache(maxsize=1024)  # bounded, because worksheets keep adding criteria
 def _not_given(limit: Limit) -> Absent:
     return Absent((limit.name,), limit.remedy)
 
@@ -285,8 +284,12 @@ def _absent(template: Template, formula: Formula[Any], reason: str | None) -> Ab
 def error_of(evaluated: EvaluatedValues, name: str) -> Any:
     """Return the relative error of an output; NaN if it is unknown.
 
-    The error is unknown if the template has no measured errors, or has no levels and no entry for the output.
+    A line of a design defines its result, so it adds no error of its own. Otherwise the error is unknown if
+    the template has no measured errors, or has no levels and no entry for the output.
     """
+    sheet = evaluated.template.sheet
+    if sheet is not None and sheet.is_exact:
+        return 0.0
     error, table = evaluated.errors.get(name), evaluated.measured
     if error is None or table is None or not (evaluated.template.levels or name in table.outputs):
         return float("nan")

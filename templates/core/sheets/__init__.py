@@ -4,12 +4,13 @@
 `run_tests` runs the tests in the worksheet. `docs/reference/worksheets.md` describes the language.
 """
 
+from templates.core.sheets.design_names import DesignName
 from templates.core.sheets.faults import SheetFault, SheetRefused
 from templates.core.sheets.names import KnownName
 from templates.core.sheets.sheet import Sheet, Statement, read
 from templates.core.sheets.worksheet_tests import SheetTest, TestResult, run_tests
 
 __all__ = [
-    "KnownName", "Sheet", "SheetFault", "SheetRefused", "SheetTest", "Statement", "TestResult", "read",
-    "run_tests",
+    "DesignName", "KnownName", "Sheet", "SheetFault", "SheetRefused", "SheetTest", "Statement", "TestResult",
+    "read", "run_tests",
 ]  # fmt: skip

@@ -9,7 +9,7 @@ from typing import Any
 import lark
 
 from templates.core.errors import FaultyText
-from templates.core.language.meaning import Meaning
+from templates.core.language.meaning import Meaning, api_name
 from templates.core.language.spec import (
     Choice,
     Curve,
@@ -25,6 +25,8 @@ from templates.core.sheets.clauses import meaning_of, said_in, words_of
 from templates.core.sheets.contents import RULE, Built
 from templates.core.sheets.criteria import criterion_of
 from templates.core.sheets.curves import curve_of, points_of
+from templates.core.sheets.design_lines import plot_of, require_line
+from templates.core.sheets.design_names import DesignName
 from templates.core.sheets.expectations import test_of
 from templates.core.sheets.expressions import Reader
 from templates.core.sheets.faults import FollowsFromFault, Refusal
@@ -43,7 +45,7 @@ _ORDER = (
     ("function", "curve"),
     ("choice", "given", "formula", "solve", "system"),
     ("require", "check"),
-    ("test",),
+    ("test", "plot"),
 )
 """The order in which statements are read: functions first, then quantities, rules and tests."""
 
@@ -51,8 +53,10 @@ _ORDER = (
 class Builder:
     """Reads the statements one by one; a fault in one statement does not hide those in the next."""
 
-    def __init__(self, chunks: list[Chunk]) -> None:
+    def __init__(self, chunks: list[Chunk], design: tuple[DesignName, ...] | None = None) -> None:
         self.built, self.names = Built(), Names()
+        if design is not None:
+            self.names.use(design)
         self.reader = Reader(self.names)
         self.refused: set[int] = set()  # lines of statements with a fault
         for chunk in chunks:
@@ -60,11 +64,29 @@ class Builder:
         for statement in self.built.statements:
             self._try(self._announce, statement)
         for kinds in _ORDER:
+            if "check" in kinds:
+                self._declare_design()
             for statement in self.built.statements:
                 if statement.kind in kinds and self._goes_on(statement):
                     self._try(getattr(self, f"_{statement.kind}"), statement)
             if "function" in kinds:
                 self._find_kinds()
+        self._forget_unused()
+
+    def _declare_design(self) -> None:
+        """Declare the values of the design as inputs, once the names of all results are known."""
+        for one in (self.names.design or {}).values():
+            name = api_name(one.name)
+            while name in self.built.lines:
+                name += "_of_design"
+            self.built.lines[name] = 0
+            self.built.parts[one.attribute] = one.declared(name)
+
+    def _forget_unused(self) -> None:
+        """Remove the inputs that no line uses."""
+        for one in (self.names.design or {}).values():
+            if one.name not in self.names.used:
+                del self.built.parts[one.attribute]
 
     def _find_kinds(self) -> None:
         """Determine from formulas, in any order, the kinds of names in K and in 1/s."""
@@ -121,7 +143,10 @@ class Builder:
         self.refused.add(chunk.line)
 
     def _parse(self, chunk: Chunk) -> None:
-        self.built.statements.append(parsed(chunk))
+        statement = parsed(chunk)
+        self.built.statements.append(statement)
+        if self.names.design is not None:
+            require_line(statement)
 
     def _announce(self, statement: ParsedStatement) -> None:
         """Declare a name, so that other statements can use it before its formula is read."""
@@ -294,6 +319,11 @@ class Builder:
         test = test_of(statement, self.reader, self.built.parts)
         self.built.tests.append(test)
         self.built.note(statement, "", "", test.words)
+
+    def _plot(self, statement: ParsedStatement) -> None:
+        plot = plot_of(statement, self.reader)
+        self.built.plots.append(plot)
+        self.built.note(statement, "", "", plot.words)
 
     def _condition(self, statement: ParsedStatement, tree: lark.Tree[Any]) -> tuple[Any, bool]:
         node, sort = self.reader.part(statement, tree)

@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from templates.core.language.spec import Choice, Declaration, Derived, Formula, Given, Requirement
+from templates.core.sheets.design_lines import Plot
 from templates.core.sheets.faults import SheetFault
-from templates.core.sheets.grammar import ParsedStatement
+from templates.core.sheets.grammar import UNNAMED, ParsedStatement
 from templates.core.sheets.names import KnownName
 from templates.core.sheets.worksheet_tests import SheetTest
 
@@ -43,6 +44,7 @@ class Built:
     criteria: dict[str, dict[str, str]] = field(default_factory=dict)
     example: dict[str, Any] = field(default_factory=dict)
     tests: list[SheetTest] = field(default_factory=list)
+    plots: list[Plot] = field(default_factory=list)
     named: dict[str, KnownName] = field(default_factory=dict)
     lines: dict[str, int] = field(default_factory=dict)
     called: dict[int, str] = field(default_factory=dict)
@@ -57,7 +59,7 @@ class Built:
         self.places[name] = line
         if node is not None:
             self.trees[line] = node
-        if statement.kind not in ("require", "check", "test"):
+        if statement.kind not in UNNAMED:
             self.named[name] = KnownName(name, unit, words, statement.kind)
 
     def declarations(self) -> dict[str, Part]:

@@ -20,6 +20,9 @@ from templates.core.units.expressions import GRAMMAR, height
 LANGUAGE = 1
 """The version of the language; a change of the meaning of a statement increases it."""
 
+UNNAMED = frozenset({"require", "check", "test", "plot"})
+"""The statements that declare no name."""
+
 MOST_PARTS, MOST_DEPTH = 400, 100
 REMEMBERED = 512  # trees of up to 100 kB
 
@@ -109,7 +112,7 @@ def declared_by(statement: ParsedStatement) -> list[str]:
     """Return the names that a statement declares."""
     if statement.kind == "system":
         return [str(unknown.children[0]) for unknown in statement.parts[:-1]]
-    return [str(statement.parts[0]).rstrip("(")] if statement.kind not in ("require", "check", "test") else []
+    return [str(statement.parts[0]).rstrip("(")] if statement.kind not in UNNAMED else []
 
 
 def _parts(tree: lark.Tree[Any]) -> int:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
 from templates.core.errors import FaultyText, unknown_name
 from templates.core.language.template import Template
+from templates.core.sheets.design_names import DesignName
 from templates.core.sheets.faults import FollowsFromFault
 from templates.core.units.lists import OVER_LISTS
 from templates.core.units.nodes import kind_of
@@ -46,6 +47,14 @@ class Names:
     broken: set[str] = field(default_factory=set)  # names whose statement has a fault
     parameters: dict[str, Part] = field(default_factory=dict)  # of the function that is being expanded
     fuel: int = FUEL
+    design: Mapping[str, DesignName] | None = None  # for the worksheet of a design, the values it may use
+    used: set[str] = field(default_factory=set)  # those that its lines use
+
+    def use(self, design: Iterable[DesignName]) -> None:
+        """Allow values of a design in the formulas."""
+        self.design = {one.name: one for one in design}
+        self.sorts |= {one.attribute: one.sort for one in self.design.values()}
+        self.units |= {one.name: one.unit for one in self.design.values()}
 
     def name(self, text: str) -> Part:
         """Return the tree and sort to which a name refers.
@@ -63,8 +72,17 @@ class Names:
             return Name(text), self.sorts[text]
         if text in self.broken:
             raise FollowsFromFault(text)
-        fault = unknown_name(text, [*self.parameters, *self.sorts], "name")
+        if self.design and text in self.design:
+            self.used.add(text)
+            return Name(self.design[text].attribute), self.design[text].sort
+        fault = unknown_name(text, self._known(), "name")
         raise FaultyText("unknown_name", fault.detail)
+
+    def _known(self) -> list[str]:
+        """Return every name that an expression may use here, as it is written."""
+        design = self.design or {}
+        hidden = {one.attribute for one in design.values()}
+        return [*self.parameters, *(name for name in self.sorts if name not in hidden), *design]
 
     def function(self, name: str) -> Call | None:
         """Return the worksheet function with this name, or None.
@@ -101,6 +119,8 @@ class Names:
         """
         if name in self.sorts or name in self.functions:
             raise FaultyText("name", f"{name[:LONGEST_NAME]} is already declared above")
+        if self.design and name in self.design:
+            raise FaultyText("name", f"{name[:LONGEST_NAME]} is a parameter of the design")
         if len(name) > LONGEST_NAME or "." in name:
             raise FaultyText(
                 "name", f"a name may have at most {LONGEST_NAME} letters, digits and _, and no dot"

@@ -11,11 +11,14 @@ from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from typing import Any
 
+from templates.core.language.spec import Derived, Formula, Profile
 from templates.core.language.template import Template
 from templates.core.sheets.class_builder import Builder
 from templates.core.sheets.classes import SheetClass, class_of
 from templates.core.sheets.contents import Built
 from templates.core.sheets.depths import set_order
+from templates.core.sheets.design_lines import Plot
+from templates.core.sheets.design_names import DesignName
 from templates.core.sheets.faults import SheetRefused
 from templates.core.sheets.grammar import LANGUAGE
 from templates.core.sheets.lines import Chunk, chunks_of, normal
@@ -35,7 +38,7 @@ class Statement:
     Attributes
     ----------
     kind
-        given, choice, curve, formula, function, solve, require, check, test, prose or remark.
+        given, choice, curve, formula, function, solve, require, check, test, plot, prose or remark.
     name
         The attribute of the class: a symbol, or the name of a rule; for a check, the name of its criterion.
     words
@@ -60,6 +63,7 @@ class Sheet:
     chunks: tuple[Chunk, ...] = field(repr=False)
     built: Built = field(repr=False, compare=False)
     language: int = LANGUAGE
+    design: tuple[DesignName, ...] | None = None  # the values that the worksheet of a design may use
 
     @property
     def title(self) -> str:
@@ -76,6 +80,21 @@ class Sheet:
         """Return the names that formulas may use, for completion in an editor."""
         return tuple(self.built.named.values())
 
+    @cached_property
+    def used(self) -> tuple[DesignName, ...]:
+        """Return the values of the design that the lines use."""
+        return tuple(one for one in self.design or () if one.attribute in self.built.parts)
+
+    @property
+    def is_exact(self) -> bool:
+        """Return whether its results have no error of their own, as those of a design's lines."""
+        return self.design is not None
+
+    @property
+    def plots(self) -> tuple[Plot, ...]:
+        """Return the plots, in the order of the lines."""
+        return tuple(self.built.plots)
+
     def digest(self) -> str:
         """Return the SHA-256 of the statements and the language version, without prose and layout."""
         return self._digest
@@ -83,7 +102,8 @@ class Sheet:
     @cached_property
     def _digest(self) -> str:
         statements = [statement.words for statement in self.built.statements]
-        content = json.dumps([self.language, statements], separators=(",", ":"))
+        used = [[one.name, one.unit] for one in self.used]
+        content = json.dumps([self.language, statements, *used], separators=(",", ":"))
         return hashlib.sha256(content.encode()).hexdigest()
 
     @cached_property
@@ -113,17 +133,24 @@ class Sheet:
             raise ValueError(
                 f"the id {id!r} must be in snake_case, and the version {version!r} must be at least 1"
             )
-        parts = {
+        parts: dict[str, Any] = {
             "__doc__": documentation_of(self.chunks) or id.replace("_", " ").capitalize(),
             "example": self.built.example,
             "criteria": self.built.criteria,
             **self.built.declarations(),
         }
+        if self.design is not None:
+            parts["main_results"] = self._single_results()
         return class_of(self, id, version, parts)
 
+    def _single_results(self) -> tuple[str, ...]:
+        """Return the names of the results that are single values, which a table of results shows."""
+        results = (one for one in self.built.parts.values() if isinstance(one, Formula))
+        return tuple(one.name for one in results if not isinstance(one, (Derived, Profile)))
 
-def read(text: str) -> Sheet:
-    """Return a worksheet from its text.
+
+def read(text: str, design: tuple[DesignName, ...] | None = None) -> Sheet:
+    """Return a worksheet from its text; `design` are the values that the worksheet of a design may use.
 
     Raises
     ------
@@ -133,28 +160,34 @@ def read(text: str) -> Sheet:
     """
     text = normal(text)
     chunks = chunks_of(text)
-    built = Builder([chunk for chunk in chunks if not chunk.kind]).built
+    built = Builder([chunk for chunk in chunks if not chunk.kind], design).built
     if faults := [*built.faults, *faults_of_loops(built)] or [*set_order(built)]:
         raise SheetRefused(faults)
-    return Sheet(text, tuple(chunks), built)
+    return Sheet(text, tuple(chunks), built, design=design)
 
 
 @lru_cache(maxsize=64)
-def from_text(text: str, id: str, version: int, withdrawn: str | None = None) -> type[Template]:
-    """Return the class of a worksheet, cached by text, id, version and withdrawal in this process.
+def from_text(
+    text: str,
+    id: str,
+    version: int,
+    withdrawn: str | None = None,
+    design: tuple[DesignName, ...] | None = None,
+) -> type[Template]:
+    """Return the class of a worksheet, cached by its arguments in this process.
 
     Raises
     ------
     SheetRefused
         If the text has faults.
     """
-    cls = read(text).template(id, version)
+    cls = read(text, design).template(id, version)
     cls.withdrawn = withdrawn
     return cls
 
 
-def _reduced(cls: Any) -> tuple[Callable[..., Any], tuple[str, str, int, str | None]]:
-    return from_text, (cls.sheet.text, cls.id, cls.version, cls.withdrawn)
+def _reduced(cls: Any) -> tuple[Callable[..., Any], tuple[Any, ...]]:
+    return from_text, (cls.sheet.text, cls.id, cls.version, cls.withdrawn, cls.sheet.design)
 
 
 copyreg.pickle(SheetClass, _reduced)

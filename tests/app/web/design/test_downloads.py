@@ -68,6 +68,15 @@ def test_the_parts_of_an_assembly_have_files_of_their_own(http):
     answer = http.get(stl, headers={"Prefer": "wait=60"})
     assert answer.status_code == 200, answer.text
     assert f"_{parts[0]}.stl" in answer.headers["content-disposition"]
+    (step,) = [one for one in links if one.endswith(f"model.step?part={parts[0]}")]
+    answer = http.get(step, headers={"Prefer": "wait=60"})
+    assert f"_{parts[0]}.step" in answer.headers["content-disposition"]
+    assert answer.content.count(b"= PRODUCT(") == 1
+    assert f"PRODUCT('pair_shell_{parts[0]}'".encode() in answer.content
+    assert b"mass " in answer.content
+    headers = {"Content-Type": "model/step", "Prefer": "wait=60"}
+    verified = http.post(f"{API}/verify", content=answer.content, headers=headers).json()
+    assert (verified["kind"], verified["intact"]) == ("step", True)
 
 
 @pytest.mark.slow

@@ -173,7 +173,7 @@ def test_the_next_version_is_held_against_the_released_one(watched, http):
     page.get_by_role("button", name="Save as a draft of version 2").click()
     expect(page.locator("[data-sheet-state]")).to_have_text("draft")
     expect(page.get_by_role("button", name="Release")).to_be_disabled()
-    page.get_by_text("What differs from version 1").click()
+    page.get_by_text("Differences from version 1").click()
     expect(page.locator(".diff .added")).to_contain_text("> more")
     expect(page.locator(".diff .removed")).to_have_count(0)
     page.get_by_text("Withdraw version 1 …").click()
