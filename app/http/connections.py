@@ -20,6 +20,7 @@ from dataclasses import dataclass
 from starlette.types import ASGIApp, Scope
 from uvicorn.protocols.http.httptools_impl import STATUS_LINE, HttpToolsProtocol
 
+from app.http.addresses import AddressLimit
 from app.observation import logs, metrics
 from app.plain import JsonObject
 
@@ -42,6 +43,8 @@ class ConnectionLimits:
     ----------
     count
         Largest number of simultaneous connections.
+    addresses
+        Limit on those of one address.
     header_seconds
         Longest time from the first byte of a request to the end of its head [s].
     write_seconds
@@ -51,6 +54,7 @@ class ConnectionLimits:
     """
 
     count: int
+    addresses: AddressLimit
     header_seconds: float
     write_seconds: float
     rate: float
@@ -74,7 +78,8 @@ class TimedProtocol(HttpToolsProtocol):
         """Start to wait for the first request."""
         super().connection_made(transport)
         self._drop_dead_peer()
-        surplus = len(self.connections) - self.limits.count
+        of_address = self.limits.addresses.enter(self.client)
+        surplus = max(len(self.connections) - self.limits.count, of_address)
         if surplus > _RESERVE:
             self._cut("too many")
             return
@@ -92,7 +97,8 @@ class TimedProtocol(HttpToolsProtocol):
             sock.setsockopt(socket.IPPROTO_TCP, _USER_TIMEOUT, milliseconds)
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Cancel the timers."""
+        """Cancel the timers, and make room for another connection."""
+        self.limits.addresses.leave(self.client)
         for timer in (self._head_timer, self._write_timer):
             if timer is not None:
                 timer.cancel()
