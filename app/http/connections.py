@@ -16,13 +16,16 @@ import socket
 import struct
 from asyncio import Transport
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from starlette.types import ASGIApp, Scope
 from uvicorn.protocols.http.httptools_impl import STATUS_LINE, HttpToolsProtocol
 
-from app.http.addresses import AddressLimit
 from app.observation import logs, metrics
 from app.plain import JsonObject
+
+if TYPE_CHECKING:
+    from app.http.limits import AddressLimit
 
 LONGEST_HEAD = 2**16  # bytes
 WHOLE = "crankwright.whole"

@@ -18,8 +18,7 @@ from starlette.middleware.exceptions import ExceptionMiddleware
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.http import access, guard
-from app.http.addresses import AddressCrowded, AddressLimit
-from app.http.limits import BodyLimits, ServiceStopping
+from app.http.limits import AddressCrowded, AddressLimit, BodyLimits, ServiceStopping
 from app.http.strict_requests import HttpError
 from app.identity.errors import IdentityError
 from app.identity.principal import ACTING

@@ -13,9 +13,8 @@ from starlette.requests import ClientDisconnect
 from app.approvals import errors as approvals
 from app.calculations.errors import InvalidBody, NoArray, TooManyValues
 from app.designs import errors as designs
-from app.http.addresses import AddressCrowded
 from app.http.guard import BadHost, CrossSite, HostNotAllowed
-from app.http.limits import BodyTooLarge, BodyTooSlow, HeadTooLarge, ServiceStopping
+from app.http.limits import AddressCrowded, BodyTooLarge, BodyTooSlow, HeadTooLarge, ServiceStopping
 from app.http.streams import TooManyStreams
 from app.http.strict_requests import (
     NotCsv,

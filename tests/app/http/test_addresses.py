@@ -8,7 +8,7 @@ import pytest
 from patience import until
 from serving import API, HANG, problem, serving
 
-from app.http.addresses import AddressLimit
+from app.http.limits import AddressLimit
 from app.settings import Settings
 
 MOST = 4
