@@ -15,17 +15,18 @@ import json
 import socket
 import struct
 from asyncio import Transport
+from collections import Counter
+from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import lru_cache
+from ipaddress import IPv4Network, IPv6Address, IPv6Network, ip_address, ip_network
 
 from starlette.types import ASGIApp, Scope
 from uvicorn.protocols.http.httptools_impl import STATUS_LINE, HttpToolsProtocol
 
 from app.observation import logs, metrics
 from app.plain import JsonObject
-
-if TYPE_CHECKING:
-    from app.http.limits import AddressLimit
 
 LONGEST_HEAD = 2**16  # bytes
 WHOLE = "crankwright.whole"
@@ -36,6 +37,53 @@ _RESERVE = 64  # connections beyond the limit that are still answered, with 503
 
 _DEAD = 60.0  # extra time for a silent machine, compared with a slow reader [s]
 _USER_TIMEOUT = getattr(socket, "TCP_USER_TIMEOUT", 0)  # Linux
+
+
+Network = IPv4Network | IPv6Network
+
+
+class AddressLimit:
+    """Counts what each address has open; at most `most`, unless it is a proxy's.
+
+    The connections of a trusted proxy belong to many clients, whose requests are counted by the address that
+    the proxy forwards.
+
+    Parameters
+    ----------
+    most
+        Largest number for one address.
+    proxies
+        Addresses and networks of the trusted proxies.
+    """
+
+    def __init__(self, most: int, proxies: Iterable[str]) -> None:
+        self.most, self._proxies = most, tuple(ip_network(proxy) for proxy in proxies)
+        self.open: Counter[str] = Counter()
+
+    def enter(self, client: tuple[str, int] | None) -> int:
+        """Count one more of a client's address; return by how many the address exceeds the limit."""
+        if client is None or _is_within(client[0], self._proxies):
+            return 0
+        self.open[client[0]] += 1
+        return max(0, self.open[client[0]] - self.most)
+
+    def leave(self, client: tuple[str, int] | None) -> None:
+        """Count one less of a client's address."""
+        if client is not None and client[0] in self.open:
+            self.open[client[0]] -= 1
+            if not self.open[client[0]]:
+                del self.open[client[0]]
+
+
+@lru_cache(maxsize=4096)
+def _is_within(host: str, networks: tuple[Network, ...]) -> bool:
+    """Return whether a host is an address of some network; an IPv4 address may be written as IPv6."""
+    with suppress(ValueError):
+        address = ip_address(host)
+        if isinstance(address, IPv6Address) and address.ipv4_mapped is not None:
+            address = address.ipv4_mapped
+        return any(address in network for network in networks)
+    return False
 
 
 @dataclass(frozen=True)

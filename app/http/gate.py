@@ -18,7 +18,8 @@ from starlette.middleware.exceptions import ExceptionMiddleware
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.http import access, guard
-from app.http.limits import AddressCrowded, AddressLimit, BodyLimits, ServiceStopping
+from app.http.connections import AddressLimit
+from app.http.limits import AddressCrowded, BodyLimits, ServiceStopping
 from app.http.strict_requests import HttpError
 from app.identity.errors import IdentityError
 from app.identity.principal import ACTING

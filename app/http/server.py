@@ -30,8 +30,7 @@ from fastapi import FastAPI
 from starlette.types import Receive, Scope, Send
 
 from app.http import problems
-from app.http.connections import ConnectionLimits, protocol
-from app.http.limits import AddressLimit
+from app.http.connections import AddressLimit, ConnectionLimits, protocol
 from app.http.problem_kinds import CROWDED
 from app.http.request_log import RequestLog, what_is_in_flight
 from app.observation import logs

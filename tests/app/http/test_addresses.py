@@ -8,7 +8,7 @@ import pytest
 from patience import until
 from serving import API, HANG, problem, serving
 
-from app.http.limits import AddressLimit
+from app.http.connections import AddressLimit
 from app.settings import Settings
 
 MOST = 4

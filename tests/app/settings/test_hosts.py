@@ -10,7 +10,8 @@ from pydantic import ValidationError
 
 from app.http import gate, guard, problems
 from app.http.access import COOKIE, HEADER, TheClient
-from app.http.limits import AddressLimit, BodyLimits
+from app.http.connections import AddressLimit
+from app.http.limits import BodyLimits
 from app.main import create_app
 from app.settings import Settings
 from app.settings.hosts import Authority, Hosts, is_loopback, parse
