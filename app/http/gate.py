@@ -23,6 +23,7 @@ from app.http.limits import AddressCrowded, BodyLimits, ServiceStopping
 from app.http.strict_requests import HttpError
 from app.identity.errors import IdentityError
 from app.identity.principal import ACTING
+from app.observation.processor_time import METER, Meter, Metered
 from app.settings.hosts import Hosts
 from app.storage.errors import DatabaseUnavailable
 
@@ -95,9 +96,22 @@ class Gate:
             return
         token = ACTING.set(sender)
         try:
-            await self.app(scope, limited, answer)
+            await self._counted(scope, limited, answer)
         finally:
             ACTING.reset(token)
+
+    async def _counted(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass the request on; count its processor time if its principal has a budget."""
+        if (settle := scope.get(access.SETTLE)) is None:
+            await self.app(scope, receive, send)
+            return
+        meter = Meter()
+        token = METER.set(meter)
+        try:
+            await Metered(self.app(scope, receive, send), meter)
+        finally:
+            METER.reset(token)
+            settle(meter.seconds)
 
     async def _passed(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass on whatever is not an HTTP request; refuse a WebSocket from another site."""
