@@ -6,7 +6,7 @@ from contextlib import ExitStack, closing
 from typing import TYPE_CHECKING
 
 from app.api.responses import Threads
-from app.api.services import Services
+from app.api.services import QuestionServices, Services
 from app.approvals.comments import Comments
 from app.approvals.service import ApprovalService
 from app.calculations.assembly import Calculations, assemble_calculations
@@ -36,7 +36,8 @@ from app.imported_models.service import IMPORT as MODEL_IMPORT
 from app.imported_models.service import ModelImports
 from app.jobs.service import Jobs
 from app.observation import metrics, readiness
-from app.pool.questions import CALCULATION, SOLUTION, TOLERANCE, Questions
+from app.pool.questions import CALCULATION, SOLUTION, TOLERANCE, A, Kind, Q, Questions
+from app.pool.steps import Steps
 from app.reports.paper import Press
 from app.reports.service import Reports
 from app.retention.service import Retention
@@ -58,7 +59,7 @@ from app.studies.solids import SolidPool
 from app.tolerances.answer import analysed
 from app.tolerances.schemas import ToleranceAnalysis
 from app.workers import prefork
-from app.workers.base import Limits, Worker
+from app.workers.base import BatchWorker, Limits, Worker
 from app.workers.choice import started_workers
 from app.workers.light import CHECKS
 from app.workers.local import LocalProcesses
@@ -92,33 +93,14 @@ FIGURES = Figures(metrics.bucket_asked, metrics.copy_looked_for)
 
 def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None) -> Services:
     """Create all parts of the service, and start taking jobs."""
-    folder = DataFolder(settings.data)
-    stack.callback(folder.release)
-    database = opened_database(settings, folder, metrics.committed)
-    stack.callback(database.close)
-    if traces is not None:
-        database.write_through(traces.writer)
-    store = opened_store(settings, folder, FIGURES)
-    if settings.artifacts_url is not None:
-        claim(database, store)
-    results.limit(settings.cache_mb)
-    retention = Retention(database, store, settings)
-    retention.start()
-    stack.callback(retention.stop)
+    folder, database, store = open_data(settings, stack, traces)
     stack.callback(prefork.close)
     workers = started_workers(settings, stack)
     catalogues = find_catalogues(settings, workers.here)
     stack.callback(catalogues.close)
-    of_jobs = workers.of_jobs if traces is None else traces.worker(workers.of_jobs)
-    jobs = Jobs(database, of_jobs, settings, problems.describe)
-    if traces is not None:
-        jobs.run_within(traces.job)
-    sealer = Sealer(database)
-    sealer.start()
-    stack.callback(sealer.stop)
-    registry = ImportedModelRegistry(database, catalogues, is_shared=database.is_shared)
-    registry.follower.start()
-    stack.callback(registry.follower.stop)
+    jobs = job_service(settings, database, workers.of_jobs, traces)
+    start_sealer(database, stack)
+    registry = followed_imports(database, catalogues, stack)
     published = published_worksheets(database, catalogues, stack)
     calculations = assemble_calculations(settings, stack, NETWORK, SHEETS)
     calculation_cache = CalculationCache()
@@ -129,18 +111,7 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
         database, store, Limits(settings.analysis_deadline, settings.analysis_memory_mb)
     )
     register_jobs(jobs, builds, analysing, catalogues, calculations, calculation_cache)
-    about = database, catalogues, store, jobs, calculations.steps
-    evaluations = Questions(EVALUATION, *about)
-    previews = Questions(PREVIEWS, *about)
-    decisions = Questions(DECISIONS, *about)
-    explanations = Questions(EXPLANATIONS, *about)
-    impacts = Questions(IMPACTS, *about)
-    solving = Questions(in_a_process(SOLUTION, DesignSolution, solved), *about)
-    tolerances = Questions(in_a_process(TOLERANCE, ToleranceAnalysis, analysed), *about)
-    variant_details = Questions(VARIANT_DETAILS, *about)
-    questions = evaluations, previews, decisions, explanations, impacts, solving, tolerances, variant_details
-    for one in questions:
-        jobs.register(one.kind.name, one, one.failed, lane=CALCULATION)
+    questions = assemble_questions(database, catalogues, store, jobs, calculations.steps)
     designs = Designs(database, jobs, catalogues, calculation_cache)
     solids = SolidPool(database, builds, analysing, settings.workers)
     of_studies = StudyServices(
@@ -166,19 +137,11 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
         calculations=calculations.pool,
         steps=calculations.steps,
         threads=Threads(),
-        evaluations=evaluations,
         designs=designs,
         labelling=LabelService(database),
-        previews=previews,
-        decisions=decisions,
-        explanations=explanations,
         studies=studies,
         worksheets=worksheets,
         imports=imports,
-        solving=solving,
-        tolerances=tolerances,
-        variant_details=variant_details,
-        impacts=impacts,
         models=models,
         model_imports=model_imports,
         analyses=analyses,
@@ -195,7 +158,78 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
                 "calculations": readiness.Processes(calculations.pool),
             }
         ),
+        **questions,
     )
+
+
+def open_data(
+    settings: Settings, stack: ExitStack, traces: Traces | None
+) -> tuple[DataFolder, Database, Artifacts]:
+    """Return the data folder, the database and the store of files; start the deletion of what has expired."""
+    folder = DataFolder(settings.data)
+    stack.callback(folder.release)
+    database = opened_database(settings, folder, metrics.committed)
+    stack.callback(database.close)
+    if traces is not None:
+        database.write_through(traces.writer)
+    store = opened_store(settings, folder, FIGURES)
+    if settings.artifacts_url is not None:
+        claim(database, store)
+    results.limit(settings.cache_mb)
+    retention = Retention(database, store, settings)
+    retention.start()
+    stack.callback(retention.stop)
+    return folder, database, store
+
+
+def job_service(settings: Settings, database: Database, worker: BatchWorker, traces: Traces | None) -> Jobs:
+    """Return the job service; with traces, each job is recorded in a span."""
+    if traces is None:
+        return Jobs(database, worker, settings, problems.describe)
+    jobs = Jobs(database, traces.worker(worker), settings, problems.describe)
+    jobs.run_within(traces.job)
+    return jobs
+
+
+def start_sealer(database: Database, stack: ExitStack) -> None:
+    """Start to seal the audit trail."""
+    sealer = Sealer(database)
+    sealer.start()
+    stack.callback(sealer.stop)
+
+
+def followed_imports(database: Database, catalogues: Catalogues, stack: ExitStack) -> ImportedModelRegistry:
+    """Return the registry of imported models, which follows the imports of other servers."""
+    registry = ImportedModelRegistry(database, catalogues, is_shared=database.is_shared)
+    registry.follower.start()
+    stack.callback(registry.follower.stop)
+    return registry
+
+
+def assemble_questions(
+    database: Database, catalogues: Catalogues, store: Artifacts, jobs: Jobs, steps: Steps
+) -> QuestionServices:
+    """Return the services for all kinds of questions."""
+    about = database, catalogues, store, jobs, steps
+    return QuestionServices(
+        evaluations=question_service(EVALUATION, *about),
+        previews=question_service(PREVIEWS, *about),
+        decisions=question_service(DECISIONS, *about),
+        explanations=question_service(EXPLANATIONS, *about),
+        impacts=question_service(IMPACTS, *about),
+        solving=question_service(in_a_process(SOLUTION, DesignSolution, solved), *about),
+        tolerances=question_service(in_a_process(TOLERANCE, ToleranceAnalysis, analysed), *about),
+        variant_details=question_service(VARIANT_DETAILS, *about),
+    )
+
+
+def question_service(
+    kind: Kind[Q, A], database: Database, catalogues: Catalogues, store: Artifacts, jobs: Jobs, steps: Steps
+) -> Questions[Q, A]:
+    """Return the service for one kind of question, with its job handler registered."""
+    service = Questions(kind, database, catalogues, store, jobs, steps)
+    jobs.register(kind.name, service, service.failed, lane=CALCULATION)
+    return service
 
 
 def data_checks(

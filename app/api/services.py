@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypedDict
 
 from app.api.responses import Threads
 from app.approvals.comments import Comments
@@ -43,6 +44,19 @@ from app.tolerances.schemas import ToleranceAnalysis
 from app.workers.pieces import Pieces
 from app.worksheets.imports.service import Imports
 from app.worksheets.service import Worksheets
+
+
+class QuestionServices(TypedDict):
+    """The services that answer a question at once or by a job, by their field in `Services`."""
+
+    evaluations: Questions[Question, Pieces]
+    previews: Questions[PreviewRequest, Preview]
+    decisions: Questions[decisions_of.DecisionQuestion, Decision]
+    explanations: Questions[ExplanationQuestion, Explanation]
+    impacts: Questions[survey.ImpactQuestion, Impact]
+    solving: Questions[DesignQuestion, DesignSolution]
+    tolerances: Questions[DesignQuestion, ToleranceAnalysis]
+    variant_details: Questions[WantedVariant, VariantDetail]
 
 
 @dataclass(frozen=True)

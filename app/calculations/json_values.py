@@ -45,8 +45,15 @@ def verdict(ordered: Sequence[Judgement]) -> dict[str, object]:
 
 def criterion(judgement: Judgement) -> JsonObject:
     """Return one criterion as JSON, without members that do not apply."""
-    names = {"name": judgement.name, "words": judgement.words, "require": judgement.require}
-    shown: JsonObject = {**names, "verdict": judgement.verdict, "sentence": sentence(judgement)}
+    shown: JsonObject = {
+        "name": judgement.name,
+        "words": judgement.words,
+        "require": judgement.require,
+        "verdict": judgement.verdict,
+        "sentence": sentence(judgement),
+        "error_stated": judgement.error_known,
+        "error_known": judgement.error_known,
+    }
     _show_numbers(judgement, shown)
     if judgement.give:
         shown["give"] = list(judgement.give)
@@ -63,7 +70,6 @@ def criterion(judgement: Judgement) -> JsonObject:
 def _show_numbers(judgement: Judgement, shown: JsonObject) -> None:
     """Add the numbers of a criterion to its JSON object."""
     unit, margin = judgement.unit, judgement.margin
-    shown["error_stated"] = shown["error_known"] = judgement.error_known
     if judgement.value is not None and math.isfinite(judgement.value):
         shown["value"] = {"value": judgement.value, "unit": unit}
     if judgement.limit is not None and math.isfinite(judgement.limit):

@@ -170,7 +170,7 @@ def new_id(session: Session) -> str:
 
 def now() -> str:
     """Return the present time in UTC as text."""
-    return f"{datetime.now(UTC).replace(tzinfo=None).isoformat(timespec='microseconds')}Z"
+    return as_text(datetime.now(UTC))
 
 
 def as_text(moment: datetime) -> str:

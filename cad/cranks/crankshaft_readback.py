@@ -6,46 +6,18 @@ order, the faces of the ends and of the webs. If a dimension is common to all th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import atan2, degrees, hypot, pi, remainder
+from math import atan2, degrees, hypot, remainder
 
 from cadquery import Vector
 
 from cad.cranks.planes_across import PlanesAcross, within
-from cad.cranks.throw_readback import Webs, stubs
+from cad.cranks.throw_readback import ThrowReadback, Webs, stubs
 from cad.surfaces import Face, PartSurfaces, Place, Size, Surface, Z, alike, faces_of
 
 _CLEAR = 1e-6  # [mm], also used as the sine of an angle
-_ANGLE = 1e-8  # [rad]
-
-
-@dataclass(frozen=True)
-class ThrowReadback:
-    """A throw: its pins, and the positions of its web faces [mm], from front to rear.
-
-    An undivided pin counts once; split pins count as two, with a middle web between them.
-    """
-
-    pins: tuple[Surface, ...]
-    faces: tuple[float, ...]
-
-    @property
-    def angles(self) -> tuple[float, float]:
-        """Return the angles of the pins next to the front and rear web, from x towards y [rad]."""
-        first, last = (atan2(pin.point.y, pin.point.x) for pin in (self.pins[0], self.pins[-1]))
-        return first, last
-
-    @property
-    def pin_spans(self) -> list[tuple[float, float]]:
-        """Return the start and end of the pins, including their fillets."""
-        return [(self.faces[at], self.faces[at + 1]) for at in range(1, len(self.faces) - 1, 2)]
-
-    @property
-    def webs(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Return the start and end of the webs, without the middle web."""
-        return self.faces[:2], self.faces[-2:]
 
 
 @dataclass(frozen=True)
@@ -303,64 +275,6 @@ class ShaftReadback:
             raise LookupError(f"the crankshaft must have {len(near)} throws; the file has {len(seen)}")
         return [wanted + remainder(angle - wanted, 360) for angle, wanted in zip(seen, near, strict=True)]
 
-    def counterweights(self) -> list[float]:
-        """Return the radius of each web's counterweight [mm]; 0 for none."""
-        return [max((c.diameter for c in rim), default=0.0) / 2 for rim in self._rims]
-
-    def counterweight(self) -> float:
-        """Return the radius that the counterweights of all webs share [mm]; 0 if there are none.
-
-        Raises
-        ------
-        LookupError
-            If they differ.
-        """
-        alike(self.counterweights(), "counterweights")
-        rims = [cylinder for rim in self._rims for cylinder in rim]
-        return Size.radius(rims) if rims else 0.0
-
-    @cached_property
-    def _rims(self) -> list[list[Surface]]:
-        """Return the cylinders about the shaft that are wider than the web, for each web."""
-        least = 1.01 * self.web_width
-        about, webs = self.seen.about(Z), (web for throw in self.throws for web in throw.webs)
-        return [[c for c in within(about, *web) if c.diameter > least] for web in webs]
-
-    def counterweight_angle(self, radii: Sequence[float], near: float) -> float:
-        """Return the common angle of the counterweights [deg].
-
-        A flank is a plane through the axis, and flanks of several throws may lie in one plane. At half the
-        angle each throw with a counterweight has both flanks. In the rare case that several angles fit, the
-        result is the one nearest to the expected angle [deg].
-
-        Raises
-        ------
-        LookupError
-            If no angle fits.
-        """
-        flanks = [p for p in self.seen.planes if p.holds(Z) and abs(p.direction.z) < _CLEAR]
-        lines = [_line(plane) for plane in flanks]
-        angles = [angle for throw in self.throws for angle in throw.angles]
-        heavy = [angle for angle, radius in zip(angles, radii, strict=True) if radius > 0]
-        candidates = {self._fold(line - heavy[0]) for line in lines}
-        shared = [
-            half
-            for half in candidates
-            if all(_shown(angle + side * half, lines) for angle in heavy for side in (-1, 1))
-        ]
-        if not shared:
-            raise LookupError("the flanks of the counterweights are missing")
-        half = min(shared, key=lambda half: abs(2 * degrees(half) - near))
-        sides = (
-            faces_of(p for p in flanks if _shown(heavy[0] + side * half, [_line(p)])) for side in (-1, 1)
-        )
-        return Size(2 * degrees(half), "angle", Place(*sides))
-
-    @staticmethod
-    def _fold(angle: float) -> float:
-        """Return the acute angle between two lines [rad]."""
-        return abs(remainder(angle, pi))
-
 
 def _leans(normal: Vector) -> bool:
     """Return whether a normal is oblique: neither parallel nor perpendicular to the shaft."""
@@ -383,13 +297,3 @@ def _meeting(journal: Surface, end: Surface) -> float:
 def _lies(plane: Surface, normal: Vector, distance: float) -> bool:
     """Return whether a plane has this normal, in either direction, and this distance from the origin."""
     return plane.along(normal) and abs(plane.point.dot(normal) - distance) < _CLEAR
-
-
-def _line(flank: Surface) -> float:
-    """Return the angle of the line in which a plane through the axis meets a plane across it [rad]."""
-    return atan2(flank.direction.y, flank.direction.x) + pi / 2
-
-
-def _shown(line: float, lines: Iterable[float]) -> bool:
-    """Return whether a line through the axis coincides with one of the given lines."""
-    return any(abs(remainder(line - other, pi)) < 100 * _ANGLE for other in lines)

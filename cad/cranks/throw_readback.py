@@ -19,6 +19,33 @@ _CLEAR = 1e-6  # [mm], also used as the sine of an angle
 
 
 @dataclass(frozen=True)
+class ThrowReadback:
+    """A throw: its pins, and the positions of its web faces [mm], from front to rear.
+
+    An undivided pin counts once; split pins count as two, with a middle web between them.
+    """
+
+    pins: tuple[Surface, ...]
+    faces: tuple[float, ...]
+
+    @property
+    def angles(self) -> tuple[float, float]:
+        """Return the angles of the pins next to the front and rear web, from x towards y [rad]."""
+        first, last = (atan2(pin.point.y, pin.point.x) for pin in (self.pins[0], self.pins[-1]))
+        return first, last
+
+    @property
+    def pin_spans(self) -> list[tuple[float, float]]:
+        """Return the start and end of the pins, including their fillets."""
+        return [(self.faces[at], self.faces[at + 1]) for at in range(1, len(self.faces) - 1, 2)]
+
+    @property
+    def webs(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Return the start and end of the webs, without the middle web."""
+        return self.faces[:2], self.faces[-2:]
+
+
+@dataclass(frozen=True)
 class Webs:
     """Positions of the faces of both webs along the shaft [mm], from front to rear."""
 

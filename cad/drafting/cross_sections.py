@@ -14,15 +14,13 @@ from itertools import pairwise
 from math import atan2, cos, degrees, hypot, radians, sin
 from string import ascii_uppercase
 
-from cadquery import Location, Vector
-
 from cad.drafting.curves import Curve, Point
 from cad.drafting.declaration import DrawingDeclaration
 from cad.drafting.measures import Measure, flank_angles, on, plane_widths
 from cad.drafting.parameter_match import Dimension, matched
 from cad.drafting.protrusions import of_slots
-from cad.drafting.removed_section import RemovedSection
-from cad.drafting.section import CLEAR, Frame, curve_of, cut_of, faces_across
+from cad.drafting.removed_section import RemovedSection, section_view
+from cad.drafting.section import CLEAR, Frame
 from cad.drafting.views import View
 from cad.step import Body
 from cad.surfaces import PartSurfaces, Surface, Z
@@ -79,10 +77,7 @@ def _webs(body: Body, seen: PartSurfaces, frame: Frame) -> Iterator[_Web]:
         if not any(low < z < high for z in flanks):
             continue
         middle = (low + high) / 2
-        faces = faces_across(body.shape.moved(Location(Vector(0, 0, -middle))), Z)
-        curves = [curve_of(edge, frame) for face in faces for edge in face.Edges()]
-        straight = [(c.points[0], c.points[-1]) for c in curves if c.arc is None and len(c.points) == 2]
-        view = View(frame, curves, [], [], [cut_of(0, face, frame) for face in faces], [], straight)
+        view = section_view(0, body, Z, middle, frame)
         own = replace(
             seen,
             planes=tuple(p for p in seen.planes if p.middle is not None and low < p.middle.z < high),

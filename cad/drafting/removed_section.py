@@ -105,19 +105,23 @@ def _removed(
     height = sum(factor * length_of(parameters[name]) for name, factor in factors.items())
     frame = Frame(end.frame.right, Y.cross(end.frame.right))  # seen from above
     part, body = next((i, body) for i, body in enumerate(bodies) if body.name == said["of"])
-    faces = faces_across(body.shape.moved(Location(Vector(0, -height, 0))), Y)
-    edges = [edge for face in faces for edge in face.Edges()]
-    curves = [curve_of(edge, frame) for edge in edges]
-    straight = [(c.points[0], c.points[-1]) for c in curves if c.arc is None and len(c.points) == 2]
-    if not straight:
+    view = section_view(part, body, Y, height, frame)
+    if not view.edges:
         return None
-    view = View(frame, curves, [], [], [cut_of(part, face, frame) for face in faces], [], straight)
     wanted = {name: parameters[name] for name in shows if name in parameters}
     leaning = [*_leaning(view, seen[body.name], height)]
     shown = [*_measures(view, seen[body.name], leaning)]
     dimensions, _ = matched(wanted, declared.sizes, shown, declared.limits)
     planes = on(*(plane for _, plane in leaning))
     return RemovedSection(letter, view, height, tuple(dimensions), leaning=planes) if dimensions else None
+
+
+def section_view(part: int, body: Body, axis: Vector, place: float, frame: Frame) -> View:
+    """Return the view of a body's section across an axis, at a place along it [mm]."""
+    faces = faces_across(body.shape.moved(Location(axis * -place)), axis)
+    curves = [curve_of(edge, frame) for face in faces for edge in face.Edges()]
+    straight = [(c.points[0], c.points[-1]) for c in curves if c.arc is None and len(c.points) == 2]
+    return View(frame, curves, [], [], [cut_of(part, face, frame) for face in faces], [], straight)
 
 
 def _leaning(view: View, seen: PartSurfaces, height: float) -> Iterator[tuple[float, Surface]]:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from cad.cranks.counterweight_readback import CounterweightReadback
 from cad.cranks.counterweights import count, sectors, stand_out, there_is_none, webs_of
 from cad.cranks.crankshaft_readback import ShaftReadback
 from cad.cranks.end_features import EndFeatures
@@ -243,18 +244,19 @@ class Crankshaft(SplitParameters, ThrustParameters, EndFeatures):
         throws, thrust = round(float(self.n)), round(float(self.k_t))
         planes = PlanesAcross(seen[self.id], split, bool(self.b_k > 0), thrust, throws)
         found = ShaftReadback(seen[self.id], planes)
-        radii = found.counterweights()
+        counterweights = CounterweightReadback(found)
+        radii = counterweights.radii
         near = np.degrees(np.atleast_1d(self.psi)).tolist()
         dimensions: dict[str, Dimension] = {
             "pin_angles": found.pin_angles(near),
             **found.common(),
             "pin_split": found.pin_split(float(np.degrees(self.delta))),
-            "counterweight_radius": radii if np.ndim(self.R_w) else found.counterweight(),
+            "counterweight_radius": radii if np.ndim(self.R_w) else counterweights.radius(),
             **EndReadback(found).sizes(),
         }
         if split:
             dimensions |= found.middle_web()
         if max(radii) > 0:
             wanted = float(np.degrees(self.phi_w))
-            dimensions["counterweight_angle"] = found.counterweight_angle(radii, wanted)
+            dimensions["counterweight_angle"] = counterweights.angle(wanted)
         return dimensions

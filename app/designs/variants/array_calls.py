@@ -15,12 +15,13 @@ from app.plain import Raw
 from app.pool.errors import StepDeferred
 from templates.core.arrays import Array
 from templates.core.errors import InvalidInputs
-from templates.core.language.evaluate import Evaluation, answers_at_level
+from templates.core.language.evaluate import Evaluation, answers_only
 from templates.core.language.intake import is_single
 from templates.core.language.levels import at_level
 from templates.core.language.spec import Curve, Declaration, Profile, Table
 from templates.core.language.template import Template
 from templates.core.units.quantity import TypedQuantity
+from templates.core.units.units import Value
 
 MOST_ROWS = 4096
 
@@ -123,9 +124,17 @@ def _column(asked: Sequence[StepInputs], name: str) -> Raw:
     return TypedQuantity(np.asarray(scale.from_si(si)).tolist(), scale.text, si, {})
 
 
+def _in_row(row: int, error: Value | None) -> Value | None:
+    """Return the error of one row; the array call has computed it with everything that it depends on."""
+    return error[row] if isinstance(error, np.ndarray) and error.ndim else error
+
+
 @dataclass(frozen=True)
 class _Rows:
-    """The result of an array call, read row by row."""
+    """The result of an array call, read row by row.
+
+    A row has the values and errors that the array call computed: nothing is calculated again for it.
+    """
 
     whole: Evaluation
     count: int
@@ -134,9 +143,10 @@ class _Rows:
         """Return the evaluation of one row; None if it is refused and must be calculated alone."""
         try:
             template = self._template(row, asked)
-            answers, errors = answers_at_level(template, list(self.whole.outputs))
+            answers = answers_only(template, self.whole.outputs)
         except InvalidInputs:
             return None
+        errors = {name: _in_row(row, error) for name, error in self.whole.error.items()}
         seconds = self.whole.seconds / self.count
         return Evaluation(template, {}, answers, self.whole.level, errors, [], seconds)
 

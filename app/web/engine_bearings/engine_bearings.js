@@ -7,6 +7,9 @@ let timer = 0, asked = null;
 
 form.addEventListener("input", (event) => later(event.target));
 form.addEventListener("change", (event) => later(event.target));
+file.addEventListener("change", () => {
+  if (file.files.length) form.elements.gas.value = "diagram"; // whoever chooses a diagram wants it to be used
+});
 
 function later(changed) {
   clearTimeout(timer);

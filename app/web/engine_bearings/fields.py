@@ -1,7 +1,8 @@
 """The fields of the wizard that have no proposed value, and how their texts are read.
 
-A number without a unit has the unit of its field. A decimal comma is read as a decimal point unless it may
-group thousands; then the reader asks which is meant.
+A number without a unit has the unit that the page shows beside its field, in SI or US units. A decimal comma
+is read as a decimal point unless it may group thousands; then the reader asks which is meant, except if the
+user chose the decimal comma.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from app.presentation.units import System, shown_unit, shown_value
 from app.web.engine_bearings.layouts import written_order
 from templates.core.errors import FaultyText
 from templates.core.units.quantity import in_points, read
@@ -16,6 +18,7 @@ from templates.core.units.relation import is_relation
 from templates.physics.journals.oil_grades import grades
 
 _BARE = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_COMMA = re.compile(r"(?<=[0-9]),(?=[0-9])")
 _ITEM = re.compile(r"[0-9]{1,3}")
 _ORDER = re.compile(r"\[?[0-9]{1,3}(?:[\s,;\-–>]+[0-9]{1,3})*\]?")
 OIL_UNIT = "mPa*s"
@@ -49,8 +52,41 @@ OIL = Asked(
 )
 
 
-def quantity_text(text: str, unit: str) -> str:
+@dataclass(frozen=True)
+class Typing:
+    """How the texts are typed: the units of bare numbers, and whether a comma is always a decimal sign."""
+
+    units: System = "si"
+    has_comma: bool = False
+
+    def quantity(self, text: str, unit: str) -> str:
+        """Return a typed quantity with a decimal point and a unit; `unit` is the declared one.
+
+        Raises
+        ------
+        FaultyText
+            As raised by `quantity_text`.
+        """
+        plain = text.strip()
+        if self.has_comma and not is_relation(plain):
+            plain = _COMMA.sub(".", plain)
+        return quantity_text(plain, unit, self.unit(unit))
+
+    def unit(self, declared: str) -> str:
+        """Return the unit of a bare number."""
+        return shown_unit(declared, self.units)
+
+    def example(self, text: str, unit: str) -> str:
+        """Return an example of a quantity in the unit of a bare number."""
+        if self.unit(unit) == unit:
+            return text
+        return f"{shown_value(float(text.split()[0]), unit, self.units):.3g} {self.unit(unit)}"
+
+
+def quantity_text(text: str, unit: str, bare: str = "") -> str:
     """Return a typed quantity with a decimal point and a unit; a relation is returned as typed.
+
+    A bare number has the unit `bare`, by default the declared `unit`.
 
     Raises
     ------
@@ -62,9 +98,12 @@ def quantity_text(text: str, unit: str) -> str:
         return plain
     plain = in_points(plain)
     if _BARE.fullmatch(plain) and unit != "1":
-        plain = f"{plain} {unit}"
+        plain = f"{plain} {bare or unit}"
     read(plain, unit)
     return plain
+
+
+TYPING = Typing()
 
 
 def firing_order(text: str, cylinders: int) -> list[int]:
@@ -90,7 +129,7 @@ def oil_grade(text: str) -> str | None:
     return next((name for name in names if name in grades()), None)
 
 
-def viscosity(text: str) -> str:
+def viscosity(text: str, typing: Typing = TYPING) -> str:
     """Return the dynamic viscosity that a text states.
 
     Raises
@@ -99,7 +138,7 @@ def viscosity(text: str) -> str:
         If it is neither a viscosity nor a known grade.
     """
     try:
-        return quantity_text(text, OIL_UNIT)
+        return typing.quantity(text, OIL_UNIT)
     except FaultyText as error:
         detail = f"{error}; or name a grade, such as SAE 5W-30, SAE 40 or ISO VG 46"
         raise FaultyText("no_oil", detail) from None

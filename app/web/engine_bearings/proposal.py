@@ -19,9 +19,10 @@ from app.designs.document import Document
 from app.designs.engine.calculate import calculate
 from app.designs.graph import build_graph
 from app.presentation import numbers
+from app.presentation.units import System, shown_unit
 from app.web.engine_bearings import ratios
 from app.web.engine_bearings.document import SHELL, Bearing, bearings, film_step, heat_step
-from app.web.engine_bearings.fields import QUANTITIES, firing_order, oil_grade, quantity_text, viscosity
+from app.web.engine_bearings.fields import QUANTITIES, TYPING, Typing, firing_order, oil_grade, viscosity
 from app.web.engine_bearings.gas import Diagram
 from app.web.engine_bearings.layouts import LAYOUTS, Layout
 from app.web.engine_bearings.ratios import Ratio
@@ -82,7 +83,8 @@ class _Engine:
 class _Reader:
     """Reads the fields and collects what is wrong with them."""
 
-    def __init__(self, typed: Mapping[str, str]) -> None:
+    def __init__(self, typed: Mapping[str, str], typing: Typing) -> None:
+        self.typing = typing
         self.typed = {name: text.strip() for name, text in typed.items()}
         self.faults: dict[str, str] = {}
 
@@ -117,7 +119,7 @@ def proposed(layout: Layout, gas: str, *, has_grade: bool = True) -> dict[str, R
     }
 
 
-def propose(typed: Mapping[str, str], diagram: Diagram | None = None) -> Proposal:
+def propose(typed: Mapping[str, str], diagram: Diagram | None = None, typing: Typing = TYPING) -> Proposal:
     """Return the design of the engine that the fields describe.
 
     Parameters
@@ -127,8 +129,10 @@ def propose(typed: Mapping[str, str], diagram: Diagram | None = None) -> Proposa
         proposed values, which may be empty.
     diagram
         The indicator diagram, if `gas` is `diagram`.
+    typing
+        The units of bare numbers, and the meaning of a comma.
     """
-    reader = _Reader(typed)
+    reader = _Reader(typed, typing)
     engine = _engine(reader, diagram)
     if engine is None:
         return Proposal({}, reader.faults)
@@ -143,12 +147,12 @@ def _engine(reader: _Reader, diagram: Diagram | None) -> _Engine | None:
     if layout is None:
         reader.faults["layout"] = "choose the layout of the engine"
     given: dict[str, JsonValue] = {
-        name: reader.given(name, asked.words, partial(quantity_text, unit=asked.unit))
+        name: reader.given(name, asked.words, partial(reader.typing.quantity, unit=asked.unit))
         for name, asked in QUANTITIES.items()
     }
     grade = oil_grade(reader.text("oil"))
     if grade is None:
-        given["oil_viscosity"] = reader.given("oil", "oil", viscosity)
+        given["oil_viscosity"] = reader.given("oil", "oil", partial(viscosity, typing=reader.typing))
     if gas == DIAGRAM and diagram is None:
         reader.faults[DIAGRAM] = "choose the file of the indicator diagram, or paste its table"
     if layout is None:
@@ -167,7 +171,7 @@ def _chosen(reader: _Reader, name: str, ratio: Ratio, layout: Layout) -> JsonVal
         return list(layout.order) if name == ORDER else ratio.relation
     if name == ORDER:
         return list(reader.read(name, lambda text: firing_order(text, layout.cylinders)) or ())
-    return reader.read(name, lambda text: quantity_text(text, ratio.unit))
+    return reader.read(name, lambda text: reader.typing.quantity(text, ratio.unit))
 
 
 def _document(name: str, engine: _Engine) -> dict[str, JsonValue]:
@@ -253,21 +257,31 @@ def _cycle(gas: str, diagram: Diagram | None, offers: Mapping[str, Ratio]) -> di
 
 
 def proposed_values(
-    parameters: Mapping[str, JsonValue], offers: Mapping[str, Ratio], catalogues: Catalogues
+    parameters: Mapping[str, JsonValue],
+    offers: Mapping[str, Ratio],
+    catalogues: Catalogues,
+    units: System = "si",
 ) -> dict[str, str]:
-    """Return the value of each proposal whose relation depends on determined parameters only."""
+    """Return the value of each proposal whose relation depends on determined parameters only.
+
+    In US units, the values of proposed quantities are returned too: they show the unit of a bare number.
+    """
     determined = _determined(parameters)
     graph, faults = build_graph(Document(name="proposals", parameters=determined), catalogues)
     if faults:
         return {}
     result = calculate(graph, lambda *_: None, lambda *_: None)
-    shown = [name for name in offers if name in result.values and is_relation(determined.get(name))]
-    return {name: _written(float(result.values[name].value), offers[name].unit) for name in shown}
+    units_of = {name: shown_unit(offer.unit, units) for name, offer in offers.items()}
+    return {
+        name: _written(float(result.values[name].value), shown)
+        for name, shown in units_of.items()
+        if name in result.values and (is_relation(determined.get(name)) or shown != offers[name].unit)
+    }
 
 
-def _written(value: float, declared: str) -> str:
-    """Return a value in SI as the page shows it in its declared unit."""
-    return f"= {numbers.plain(float(unit(declared).from_si(value)))} {numbers.unit(declared)}"
+def _written(value: float, shown: str) -> str:
+    """Return a value in SI as the page shows it in a unit."""
+    return f"= {numbers.plain(float(unit(shown).from_si(value)))} {numbers.unit(shown)}"
 
 
 def _determined(parameters: Mapping[str, JsonValue]) -> dict[str, JsonValue]:

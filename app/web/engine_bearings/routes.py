@@ -11,14 +11,14 @@ from pydantic import JsonValue
 
 from app.designs.bodies import LONGEST_NOTE, DesignIn
 from app.designs.routes.designs import document_of
-from app.web.engine_bearings.fields import OIL, QUANTITIES
+from app.web.engine_bearings.fields import OIL, QUANTITIES, Typing
 from app.web.engine_bearings.gas import Diagram, diagram_of
 from app.web.engine_bearings.layouts import LAYOUTS
 from app.web.engine_bearings.pictures import PICTURES
 from app.web.engine_bearings.proposal import DIAGRAM, PETROL, Proposal, propose, proposed_values
 from app.web.engine_bearings.ratios import Ratio
 from app.web.shared.multipart import forms_with_files, parts_of
-from app.web.shared.responses import go, show
+from app.web.shared.responses import go, has_decimal_comma, show, units_of
 from app.web.shared.services import PageServices, Refused, ThePageServices
 from templates.core.errors import FaultyText
 
@@ -48,8 +48,9 @@ async def create(request: Request, services: ThePageServices) -> Response:
     parts = await parts_of(request)
     typed = {name: part.text for name, part in parts.items() if part.file is None}
     file = parts[DIAGRAM].content if DIAGRAM in parts else b""
+    typed |= {"gas": DIAGRAM} if file else {}
     diagram, fault = await services.run(_read, file, typed)
-    proposal = await services.run(propose, typed, diagram)
+    proposal = await services.run(propose, typed, diagram, _typing(request))
     faults = {**proposal.faults, **({DIAGRAM: fault} if fault else {})}
     if typed.get("wanted") == "check":
         entered = {name for name, text in typed.items() if text.strip()} | ({DIAGRAM} if fault else set())
@@ -63,6 +64,11 @@ async def create(request: Request, services: ThePageServices) -> Response:
         if refused.status != WRONG:
             raise
         return _page(request, services, typed, proposal, diagram, _by_field(proposal, refused), WRONG)
+
+
+def _typing(request: Request) -> Typing:
+    """Return how the user types: in the units and with the decimal sign chosen at the top of the page."""
+    return Typing(units_of(request), has_decimal_comma(request))
 
 
 def _read(file: bytes, typed: Mapping[str, str]) -> tuple[Diagram | None, str]:
@@ -130,6 +136,7 @@ def _page(
         status,
         layouts=LAYOUTS,
         quantities=QUANTITIES,
+        typing=_typing(request),
         oil=OIL,
         gases=GASES,
         pictures=PICTURES,
@@ -137,7 +144,7 @@ def _page(
         gas=typed.get("gas", PETROL),
         diagram=diagram,
         offers=_grouped(proposal.offers),
-        values=proposed_values(proposal.parameters, proposal.offers, services.catalogues),
+        values=proposed_values(proposal.parameters, proposal.offers, services.catalogues, units_of(request)),
         faults={name: detail for name, detail in faults.items() if name in placed},
         loose={name: detail for name, detail in faults.items() if name not in placed},
         opened={one.group for name, one in proposal.offers.items() if name in faults or typed.get(name)},

@@ -40,16 +40,23 @@ async function alone(signal) {
 
 const ofStep = (faults) => new Map([...faults].map(([name, detail]) => [`${step}.${name}`, detail]));
 
-// A value that is still missing is counted only; its field is marked when the form is sent.
+const explained = new Set(); // missing values whose fault was shown because their field was folded
+
+// A value that is still missing is counted only; its field is marked when the form is sent. If the fields of all missing
+// values are folded, they unfold with the reason: the user sees no other empty field to fill.
 function refuse(error) {
   const faults = error.byName ?? error.faults;
   if (!faults?.size) return (state.textContent = error.message);
   const texts = new Map(fields.map(({ name, value }) => [nameOf(name), value.trim()]));
   const missing = [...faults.keys()].filter((name) => texts.get(name) === "");
-  const wrong = new Map([...faults].filter(([name]) => !missing.includes(name) && (design || !isRelation(texts.get(name) ?? ""))));
+  if (missing.length && missing.every(isFolded)) missing.forEach((name) => explained.add(name));
+  const isShown = (name) => (missing.includes(name) ? explained.has(name) : design || !isRelation(texts.get(name) ?? ""));
+  const wrong = new Map([...faults].filter(([name]) => isShown(name)));
   const loose = showFaults(form, wrong);
-  tell(missing.length, wrong.size, [...loose.values()]);
+  tell(missing.length, [...wrong.keys()].filter((name) => !missing.includes(name)).length, [...loose.values()]);
 }
+
+const isFolded = (name) => Boolean(fields.find((field) => nameOf(field.name) === name)?.closest("details:not([open])"));
 
 function tell(missing, wrong, loose) {
   const counts = [missing && `${missing} missing`, wrong && `${wrong} wrong`].filter(Boolean).join(", ");
@@ -65,6 +72,7 @@ const checking = live(asked, () => {
 async function start() {
   startLists();
   form.addEventListener("input", checking.ask);
+  if (fields.some(({ value, defaultValue }) => value && value !== defaultValue)) checking.ask(); // typed before this script ran
   const own = fields.filter(({ name }) => !name.includes("@")).map(({ name, labels }) => ({ name, role: "input", words: labels[0]?.textContent ?? "", unit: "", value: "" }));
   const others = design ? (await call("GET", `/api/v1/designs/${design}/network`)).payload.names : [];
   const names = new Names([...others, ...own]);

@@ -38,6 +38,11 @@ def units_of(request: Request) -> System:
     return next((system for system in get_args(System) if system == asked), "si")
 
 
+def has_decimal_comma(request: Request) -> bool:
+    """Return whether the user chose the decimal comma for what is typed."""
+    return request.cookies.get("decimal") == "comma"
+
+
 def show(request: Request, name: str, status: int = 200, **context: object) -> Response:
     """Return a rendered page as a response."""
     units = units_of(request)

@@ -1,13 +1,14 @@
 // Convert between fields and JSON of the interface, as app/web/shared/forms.py does.
+import { hasComma } from "./decimals.js";
 
 // Return the interface's name of a control: `.scale` → `scale`, `film@level` → `film.level`.
 export const nameOf = (control) => control.replace("@", ".").replace(/^\./, "");
 
-// Where the user's language has a decimal comma, a quantity may be typed with one: 0,58 kg. It is kept with a point.
-const HAS_COMMA = new Intl.NumberFormat(navigator.language).format(0.5).includes(",");
+// On a page with a decimal comma, quantities and lists may be typed with one: 0,58 kg. They are kept with a point.
+// A comma between brackets is a decimal sign only if semicolons separate the items.
+const WITH_COMMA = /^\s*(?:\[(?=[^\]]*;)\s*)?(?:[+-]?\d+[;\s]+)*[+-]?\d+,\d+(?![\d.,])/;
 
-export const withPoints = (text) =>
-  HAS_COMMA && /^\s*[+-]?\d+,\d+(?![\d.,])/.test(text) ? text.replace(/(\d),(?=\d)/g, "$1.") : text;
+export const withPoints = (text) => (hasComma() && WITH_COMMA.test(text) ? text.replace(/(\d),(?=\d)/g, "$1.") : text);
 
 document.addEventListener("change", ({ target }) => {
   if (target.matches("form.worksheet input")) target.value = withPoints(target.value);

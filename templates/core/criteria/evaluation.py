@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -32,8 +32,7 @@ Parts = dict[str, Any]
 """Fields of a judgement by name."""
 
 
-@dataclass(frozen=True, slots=True)
-class Absent:
+class Absent(NamedTuple):
     """Why a name has no value: the inputs to give, or the reason."""
 
     give: tuple[str, ...] = ()
@@ -127,15 +126,14 @@ def _missing(criterion: Criterion, estimates: Mapping[str, Estimate], absent: Ma
 
     If the other side is a single value, the fields contain it.
     """
-    parts: Parts = {"verdict": "not_checked"}
+    why = tuple([absent[name] for name in criterion.names if name in absent and name not in estimates])
+    known = not _unknown(criterion, estimates)
+    parts: Parts = {"verdict": "not_checked", "error_known": known, **_lack(why)}
     for name, side in (("value", criterion.value), ("limit", criterion.limit)):
         if side.names <= estimates.keys():
             si = side_of(side, estimates)
             if (isinstance(si, float) or not np.ndim(si)) and math.isfinite(si):
                 parts[name] = float(criterion.scale.from_si(float(si)))
-    why = tuple([absent[name] for name in criterion.names if name in absent and name not in estimates])
-    parts["error_known"] = not _unknown(criterion, estimates)
-    parts |= _lack(why)
     return parts
 
 

@@ -67,6 +67,7 @@ class Calculation:
     _dependencies: ClassVar[dict[str, frozenset[str]]] = {}
     _results: ClassVar[frozenset[str]] = frozenset()  # attributes of formulas
     _result_names: ClassVar[frozenset[str]] = frozenset()
+    _derived: ClassVar[frozenset[str]] = frozenset()  # names of inputs whose default is a formula
     _curves: ClassVar[frozenset[str]] = frozenset()  # names of formulas that are profiles
     _remarks: ClassVar[tuple[Requirement, ...]] = ()  # the rules that refuse nothing
     _readings: ClassVar[tuple[tuple[Declaration, str], ...]] = ()  # formulas that can be read in two ways

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import lru_cache, reduce
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -115,19 +115,19 @@ def _instead(evaluated: EvaluatedValues, criterion: Criterion) -> Instead | None
 def judged_alone(evaluated: EvaluatedValues, criterion: Criterion) -> Judgement:
     """Return the judgement of one criterion whose outputs were evaluated."""
     estimates, absent = estimates_of(evaluated, criterion)
-    subject = criterion.subject or ""
-    shown = evaluated.shown_in[subject].text if subject in evaluated.shown_in else None
+    shown = evaluated.shown_in.get(criterion.subject or "")
+    unit_name = shown.text if shown else None
     template = evaluated.template
     along = None if template._curves.isdisjoint(criterion.names) else along_of(template, criterion.names)
-    more = notes(evaluated, criterion)
+    noted = notes(evaluated, criterion)
     instead = _instead(evaluated, criterion) if criterion.absent else None
-    return judge(criterion, estimates, absent, along, shown, noted=more, instead=instead)
+    return judge(criterion, estimates, absent, along, unit_name, noted=noted, instead=instead)
 
 
 def notes(evaluated: EvaluatedValues, criterion: Criterion) -> dict[str, str | None]:
-    """Return the fields of a judgement that name its level, the truth of its error, and its sources."""
-    source = _with_those_of_limits(evaluated, criterion) if evaluated.limits else criterion.source
-    return {**level_and_truth(evaluated, criterion.subject), "source": source}
+    """Return the fields of a judgement that name its level, the truth of its error, and sources of limits."""
+    noted = level_and_truth(evaluated, criterion.subject)
+    return noted | {"source": _with_those_of_limits(evaluated, criterion)} if evaluated.limits else noted
 
 
 def level_and_truth(evaluated: EvaluatedValues, output: str | None) -> dict[str, str | None]:
@@ -216,7 +216,6 @@ def _default(evaluated: EvaluatedValues, limit: Limit) -> Estimate | Absent:
     return _not_given(limit)
 
 
-@lru_cache(maxsize=1024)  # bounded, because worksheets keep adding criteria
 def _not_given(limit: Limit) -> Absent:
     return Absent((limit.name,), limit.remedy)
 

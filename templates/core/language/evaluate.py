@@ -335,6 +335,18 @@ def answers_at_level(template: Template, outputs: Iterable[str]) -> tuple[dict[s
     return part.answers, part.error
 
 
+def answers_only(template: Template, outputs: Iterable[str]) -> dict[str, Answer]:
+    """Return a template's answers in declared units, without their errors and warnings.
+
+    Raises
+    ------
+    InvalidInputs
+        If a result is outside its domain.
+    """
+    with np.errstate(all="ignore"):
+        return _answers(template, list(outputs), {})
+
+
 def evaluate_at_level(
     template: Template, outputs: Iterable[str]
 ) -> tuple[dict[str, Answer], dict[str, Any], list[Notice]]:
@@ -379,7 +391,7 @@ def assumed(
 ) -> list[Assumption]:
     """Return the assumptions behind the outputs and the judged criteria of a template."""
     cls, typed = type(template), template.ledger.typed
-    given = frozenset([name for name in typed if isinstance(cls.inputs.get(name), Derived)])
+    given = cls._derived.intersection(typed)
     stated = _stated(cls, frozenset(outputs), given)  # type: ignore[arg-type]  # a class has a hash
     return [*(one for one in stated if one.name not in typed), *_limits(cls, criteria)]
 

@@ -86,6 +86,7 @@ class Template(Calculation):
         named = by_name(declared)
         cls.inputs = {name: v for name, v in named.items() if isinstance(v, (Given, Choice, Derived))}
         cls.formulas = {n: v for n, v in named.items() if n not in cls.inputs or getattr(v, "shown", False)}
+        cls._derived = frozenset(name for name, v in cls.inputs.items() if isinstance(v, Derived))
         cls._results = frozenset(formula.attribute for formula in cls.formulas.values())
         cls._result_names = frozenset(cls.formulas)
         cls._curves = frozenset(name for name, v in cls.formulas.items() if isinstance(v, Profile))

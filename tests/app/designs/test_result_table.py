@@ -1,11 +1,7 @@
 """The table of results: a row for the design and each variant, equal on page, in files and in the report."""
 
-import csv
-import io
-from html.parser import HTMLParser
-
 import pytest
-from openpyxl import load_workbook
+from equal_tables import PDF_TO_TEXT, assert_equal_in_print, assert_equal_on_page_and_in_files
 from serving import API, created, paper, patched
 
 from app.designs.result_table import EQUAL
@@ -119,37 +115,14 @@ def test_us_units_convert_the_columns(http, design):
     assert column(us, FILM)["wide"] == pytest.approx(column(si, FILM)["wide"] / 25.4)
 
 
-class Results(HTMLParser):
-    """The cells of the table of results on a page."""
-
-    def __init__(self):
-        super().__init__()
-        self.rows = {}
-
-    def handle_starttag(self, tag, attrs):
-        attrs = dict(attrs)
-        if "data-result" in attrs:
-            self.row = self.rows.setdefault(attrs["data-result"], [])
-        elif tag == "td" and "data-number" in attrs and self.rows:
-            self.row.append(float(attrs["data-number"]))
+def test_page_files_client_and_interface_show_equal_numbers(served, http, design):
+    assert_equal_on_page_and_in_files(http, served.url, design["id"])
 
 
-def test_page_csv_xlsx_and_interface_show_equal_numbers(http, design):
-    shown, place = table(http, design), f"{DESIGNS}/{design['id']}/variants"
-    lines = list(csv.reader(io.StringIO(http.get(f"{place}.csv").text)))
-    sheet = load_workbook(io.BytesIO(http.get(f"{place}.xlsx").content)).active
-    page = Results()
-    page.feed(http.get(f"/designs/{design['id']}", headers={"Accept": "text/html"}).text)
-    wanted = {row["name"]: [*row["values"], row["utilisation"]] for row in shown["rows"]}
-    assert page.rows == {name: pytest.approx(values) for name, values in wanted.items()}
-    heads = [f"results: {one['words']}" for one in shown["columns"]]
-    at = [lines[0].index(head) for head in heads]
-    units = [one["unit"] for one in shown["columns"]]
-    assert [lines[1][i] for i in at] == units
-    for line, cells in zip(lines[2:], sheet.iter_rows(min_row=3, values_only=True), strict=True):
-        values = wanted[line[0]][: len(heads)]
-        assert [float(line[i]) for i in at] == values
-        assert [cells[i] for i in at] == pytest.approx(values, rel=1e-15)
+@pytest.mark.slow
+@pytest.mark.skipif(not PDF_TO_TEXT, reason="needs Debian's package poppler-utils, which reads the PDF")
+def test_the_first_page_of_the_report_has_the_numbers_of_the_table(http, design, tmp_path):
+    assert_equal_in_print(http, design["id"], tmp_path)
 
 
 def test_the_report_begins_with_the_table(http, design):

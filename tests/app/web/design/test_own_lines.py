@@ -43,6 +43,8 @@ def test_lines_are_previewed_saved_and_in_the_verdict(watched, http, design):
     answer = http.get(f"{API}{design}", headers={"Accept": "application/json"}).json()
     assert answer["worksheet"].startswith(LINE)
     assert "worksheet.film_ratio" in answer["results"]["outputs"]
+    page.locator('[data-verdict-inside] a[href="#step-worksheet"]').first.evaluate("link => link.click()")
+    expect(text_of(page)).to_be_in_viewport()
     assert watched.faults() == []
     assert Axe().run(page).response["violations"] == []
 

@@ -59,6 +59,12 @@ def test_a_check_shows_proposals_and_how_the_diagram_was_read(http):
     assert fault(answer, "stroke") == ""
 
 
+def test_a_diagram_is_used_although_an_ideal_cycle_was_left_chosen(http):
+    answer = send(http, {"layout": "in_line_4", "gas": "petrol"}, gas_table(), "check")
+    assert '<option value="diagram" selected>' in answer.text
+    assert "crank angle [deg],pressure [bar(a)]" in answer.text
+
+
 def test_assumed_values_are_marked_beside_the_verdict_and_in_the_report(http):
     document = {
         "name": "ratios",
@@ -95,6 +101,16 @@ def test_the_form_checks_entries_while_they_are_typed(watched):
     page.get_by_label("Journal diameter").fill("58 mm")
     expect(page.locator("[data-live='source.journal_diameter']")).to_have_text("given")
     assert watched.faults() == []
+
+
+def test_bare_numbers_follow_the_switch_of_units(http):
+    typed = {"layout": "in_line_4", "bore": "3.4", "piston_mass": "1"}
+    http.cookies.set("units", "us")
+    answer = send(http, typed, wanted="check")
+    assert "= 2.21 in<" in answer.text  # 0.65 * 3.4 inch
+    assert 'placeholder="3.39 inch"' in answer.text
+    http.cookies.set("units", "si")
+    assert "= 2.21 mm<" in send(http, typed, wanted="check").text
 
 
 @NEEDS_CHROMIUM

@@ -8,6 +8,7 @@ from engine_fields import CATALOGUES, FOUR, calculated, gas_table, output, scale
 
 from app.designs.bodies import DesignIn
 from app.designs.document import assumed_values
+from app.web.engine_bearings.fields import Typing
 from app.web.engine_bearings.gas import diagram_of
 from app.web.engine_bearings.layouts import LAYOUTS
 from app.web.engine_bearings.proposal import propose, proposed, proposed_values
@@ -122,6 +123,35 @@ def test_analytic_values_of_the_proposals_follow_the_bore():
     assert values["main_clearance"] == "= 0.065 mm"
     partly = propose({"layout": "in_line_4", "bore": "100"})
     assert "rod_centre" not in proposed_values(partly.parameters, partly.offers, CATALOGUES)
+
+
+def test_analytic_bare_numbers_are_in_the_units_of_the_page():
+    """The same engine typed in inches, pounds and pound-inches, by the definitions of inch and pound."""
+    inch, pound = 25.4, 0.45359237  # mm, kg
+    factors = {"bore": inch, "stroke": inch, "rod_length": inch, "piston_mass": pound, "rod_mass": pound}
+    us = dict.fromkeys(factors, 3.0) | {"crank_unbalance": -0.7, "permissible_film": 0.05, "speed": 4500}
+    factors |= {"crank_unbalance": pound * inch, "permissible_film": inch, "speed": 1}
+    si = {name: f"{number * factors[name]:.12g}" for name, number in us.items()}
+    own, other = (
+        propose({**FOUR, **{name: str(text) for name, text in typed.items()}}, typing=typing)
+        for typed, typing in ((us, Typing("us")), (si, Typing()))
+    )
+    loads = [output(calculated(one.document), "engine", "elastic_main_load_max") for one in (own, other)]
+    assert loads[0] == pytest.approx(loads[1], rel=1e-9)
+    assert own.parameters["bore"] == "3.0 inch"
+    assert own.parameters["speed"] == "4500 rpm"
+    values = proposed_values(own.parameters, own.offers, CATALOGUES, "us")
+    assert values["journal_diameter"] == "= 1.95 in"
+    assert values["supply_pressure"] == "= 58.015 psi"
+
+
+def test_a_comma_is_a_decimal_sign_on_a_page_with_decimal_commas():
+    typed = {**FOUR, "speed": "4,500 rpm", "piston_mass": "0,58"}
+    assert set(propose(typed).faults) == {"speed"}
+    proposal = propose(typed, typing=Typing(has_comma=True))
+    assert proposal.faults == {}
+    assert proposal.parameters["speed"] == "4.500 rpm"
+    assert proposal.parameters["piston_mass"] == "0.58 kg"
 
 
 def test_analytic_a_diagram_counted_from_combustion_loads_the_engine_alike():

@@ -157,3 +157,26 @@ def test_a_decimal_comma_is_accepted_where_the_language_of_the_browser_has_one(b
     texts = ["0,5 ± 0,1 kN", "0,5 0,6 mm", "= max(0,5)", "[1,2] mm", "1,000,000 N", "1,5.2", "SAE 30"]
     assert page.evaluate(points, texts) == ["0.5 ± 0.1 kN", "0.5 0.6 mm", *texts[2:]]
     context.close()
+
+
+@pytest.mark.slow
+def test_the_decimal_sign_is_chosen_at_the_top_and_the_next_page_keeps_it(watched):
+    page = watched.page
+    watched.open("/templates/third/1")
+    length = page.get_by_label("Whole length")
+    third = page.locator('[data-output=".third_of_the_length"] .number')
+    expect(page.get_by_role("button", name="0.5")).to_have_attribute("aria-pressed", "true")
+    page.get_by_role("button", name="0,5").click()
+    expect(page.get_by_role("button", name="0,5")).to_have_attribute("aria-pressed", "true")
+    length.fill("10,5 mm")
+    expect(third).to_have_text("3.5")
+    watched.open("/templates/third/1")
+    page.get_by_label("Whole length").fill("0,6 mm")
+    expect(third).to_have_text("0.2")
+    points = "(texts) => import('/static/shared/typed.js').then(({ withPoints }) => texts.map(withPoints))"
+    lists = ["[0,5; 0,7] mm", "0 0,5 1 mm", "0,5; -0,7 mm", "1-3-4-2", "[1,2] mm", "1,500 kg"]
+    read = ["[0.5; 0.7] mm", "0 0.5 1 mm", "0.5; -0.7 mm", "1-3-4-2", "[1,2] mm", "1.500 kg"]
+    assert page.evaluate(points, lists) == read
+    page.get_by_role("button", name="0.5").click()
+    assert page.evaluate(points, lists) == lists
+    assert watched.faults() == []

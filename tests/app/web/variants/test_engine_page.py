@@ -2,6 +2,7 @@
 
 import pytest
 from browsing import settled
+from equal_tables import assert_equal_in_print, assert_equal_on_page_and_in_files
 from playwright.sync_api import expect
 from serving import API
 from test_true_pages import assert_true
@@ -25,7 +26,7 @@ def films():
     return {name: document[name] for name in ("name", "variants")} | parts
 
 
-def test_every_bearing_of_the_engine_is_decided_on_its_page(watched, http):
+def test_every_bearing_of_the_engine_is_decided_on_its_page(watched, http, tmp_path):
     answer = http.post(f"{API}/designs", json=films())
     assert answer.status_code in (201, 202), answer.text
     place = f"/designs/{answer.json()['id']}"
@@ -49,3 +50,6 @@ def test_every_bearing_of_the_engine_is_decided_on_its_page(watched, http):
         assert assert_true(title) == 1, title
     assert sum(map(assert_true, [*titles, *texts])) > 20
     assert not watched.faults()
+    id = place.rpartition("/")[2]
+    assert_equal_on_page_and_in_files(http, watched.url, id)
+    assert_equal_in_print(http, id, tmp_path)

@@ -218,7 +218,7 @@ def test_five_mains_are_typed_as_a_newcomer_writes_them(watched, http, shell):
     """By a link from the top; a heading in words, names with spaces, loads in the unit of the design."""
     page = watched.page
     watched.open(shell)
-    page.get_by_role("link", name="All bearings of an engine").click()
+    page.get_by_role("link", name="Compare variants").click()
     expect(page.locator("[name='cell.B1']")).to_be_visible()
     page.locator("[name='cell.B1']").fill("Radial load")
     expect(page.locator("[name='cell.B2']")).to_have_attribute("placeholder", "kN")
