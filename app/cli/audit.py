@@ -19,6 +19,7 @@ from app.storage.connection import require_connection, require_database
 from app.storage.engines import reading_engine, sqlite_file
 from app.storage.errors import StorageError
 from app.storage.migrations import refuse_unknown, schema_of
+from app.storage.record import before_close
 from templates.core.errors import plain
 
 _data = click.option(
@@ -78,12 +79,14 @@ def _reading(data: Path | None) -> Iterator[Session]:
     """Open a snapshot of the database in the settings."""
     settings = Settings(data=data) if data else Settings()
     try:
-        engine = reading_engine(_url(settings))
+        engine = reading_engine(url := _url(settings))
         try:
             with Session(engine) as session:
                 _require_audit(session)
                 yield session
         finally:
+            if file := sqlite_file(url):
+                before_close(file)
             engine.dispose()
     except (CannotRun, StorageError) as error:
         raise CannotRead(str(error)) from None

@@ -18,12 +18,11 @@ from app.identity.principal import ROLES, Role
 from app.identity.rows import is_over
 from app.identity.service import Changes, Identity, Kind
 from app.settings import Settings
-from app.storage.connection import require_connection
+from app.storage.connection import opened_database, require_connection
 from app.storage.database import Database
 from app.storage.engines import sqlite_file
 from app.storage.errors import DataFolderInUse, StorageError
-from app.storage.folder import DataFolder
-from app.storage.integrity import refuse_damage
+from app.storage.folder import DATABASE, DataFolder
 from app.storage.migrations import migrate
 from app.storage.tables import ApiKeyRow, PrincipalRow
 
@@ -209,12 +208,11 @@ def _prepared(settings: Settings) -> str:
     except DataFolderInUse:
         if settings.database_url is not None:
             migrate(settings.database_url)
-        return settings.database_url or f"sqlite:///{settings.data.absolute() / 'crankwright.sqlite'}"
+        return settings.database_url or f"sqlite:///{settings.data.absolute() / DATABASE}"
     try:
-        url = settings.database_url or folder.database_url
-        refuse_damage(url)
-        migrate(url)
-        return url
+        database = opened_database(settings, folder, lambda units, seconds, failed: None)
+        database.close()
+        return database.url
     finally:
         folder.release()
 
@@ -224,7 +222,7 @@ def asks_for_keys(settings: Settings) -> bool:
     if settings.oidc_issuer is not None:
         return True
     url = settings.database_url
-    file = sqlite_file(url) if url else settings.data / "crankwright.sqlite"
+    file = sqlite_file(url) if url else settings.data / DATABASE
     if file is not None and not file.exists():
         return False
     with opened(settings.data) as identity:

@@ -62,6 +62,7 @@ class OnDemand:
 
 
 COMMANDS = {
+    "accept": OnDemand("app.cli.maintenance", "accept_command", "Accept a database that was replaced."),
     "approve": OnDemand("app.cli.approvals", "approve_command", "Take a step of an approval."),
     "audit": OnDemand("app.cli.audit", "audit_command", "List and verify who did what."),
     "backup": OnDemand("app.cli.maintenance", "backup_command", "Back up database and artifacts."),

@@ -1,4 +1,4 @@
-"""`crankwright check | backup | restore`."""
+"""`crankwright check | backup | restore | accept`."""
 
 from __future__ import annotations
 
@@ -17,9 +17,12 @@ from app.maintenance.files import IN_BUCKET, IN_SHARED_FOLDER, files_of
 from app.maintenance.folder import database_file, is_in_use
 from app.maintenance.restore import restore
 from app.settings import Settings
+from app.storage.connection import opened_database
 from app.storage.engines import sqlite_file
-from app.storage.errors import DataFolderInUse
+from app.storage.errors import DatabaseLost, DataFolderInUse, StorageError
 from app.storage.folder import DataFolder
+from app.storage.integrity import refuse_damage
+from app.storage.record import record_of, require_kept
 from app.storage.stores import is_bucket
 
 CLEAN, FAULTS, CANNOT_RUN = 0, 1, 2
@@ -94,6 +97,42 @@ def restore_command(file: Path, data: Path | None) -> None:
         _say(f"{len(missing)} files were lost before the backup was made: run `crankwright check --repair`")
 
 
+@click.command("accept")
+@click.option(
+    "--data",
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    default=None,
+    help="folder of designs and artifacts",
+)
+def accept_command(data: Path | None) -> None:
+    """Accept the database in a data folder as it is; without one, the next start creates an empty one.
+
+    Use this if the service refuses to start because its database is missing, is another one or an older copy.
+    """
+    settings = _settings(data)
+    if settings.database_url is not None:
+        _refuse("CRANKWRIGHT_DATABASE_URL is set, so the data folder has no database to accept.")
+    try:
+        folder = DataFolder(settings.data)
+        try:
+            _say(_accepted(settings, folder))
+        finally:
+            folder.release()
+    except (StorageError, OSError) as error:
+        _refuse(str(error))
+
+
+def _accepted(settings: Settings, folder: DataFolder) -> str:
+    """Make the record beside the database anew, and return a sentence about it."""
+    if folder.database.exists():
+        refuse_damage(folder.database_url)
+    record_of(folder.database).unlink(missing_ok=True)
+    if not folder.database.exists():
+        return f"{folder.path} has no database: the next start creates a new, empty one."
+    opened_database(settings, folder, lambda units, seconds, failed: None).close()
+    return f"{folder.database} is accepted as it is."
+
+
 def _repair(settings: Settings) -> None:
     """Check and repair under the lock of the data folder."""
     from app.maintenance.repair import repair  # imports the geometry kernel, which other commands do not need
@@ -109,6 +148,8 @@ def _repair(settings: Settings) -> None:
             "requests them. Stop it before a repair; `crankwright check` alone may run meanwhile."
         ) from None
     try:
+        if settings.database_url is None:
+            require_kept(path)
         findings = _check(settings, in_use=False)
         if findings.database:
             raise CannotRun("A damaged database cannot be repaired: restore the last backup.")
@@ -162,7 +203,7 @@ def _refusing() -> Iterator[None]:
     """End the command with a message if an error prevents it from running."""
     try:
         yield
-    except CannotRun as error:
+    except (CannotRun, DatabaseLost) as error:
         _refuse(str(error))
     except OSError as error:
         _refuse(f"{error.filename or 'the disk'}: {error.strerror}")

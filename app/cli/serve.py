@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 
 import click
@@ -16,10 +17,9 @@ from app.plain import JsonObject
 from app.settings import Settings
 from app.settings.hosts import is_loopback
 from app.settings.machines import LOCAL
-from app.storage.connection import require_answer
+from app.storage.connection import require_answer, require_sound
 from app.storage.errors import StorageError
 from app.storage.folder import DataFolder
-from app.storage.integrity import refuse_damage
 from app.storage.ownership import require_own_store
 from app.workers import prefork
 from app.workers.light import CHECKS
@@ -63,19 +63,29 @@ def serve_command(host: str | None, port: int | None, data: Path | None, insecur
     try:
         require_answer(settings)
         _check_reach(settings, insecure)
-        folder = DataFolder(settings.data)
-        refuse_damage(settings.database_url or folder.database_url)
-        if settings.artifacts_url is not None:
-            require_own_store(settings, folder)
-        folder.release()
+        _check_data(settings)
     except StorageError as error:
         raise click.ClickException(str(error)) from None
     except OSError as error:
         message = f"{settings.data.absolute()} cannot hold the data: {error.strerror}"
         raise click.ClickException(f"{message}; name another folder with --data") from None
     place = f"[{settings.host}]" if ":" in settings.host else settings.host
-    click.echo(f"Crankwright at http://{place}:{settings.port}, data in {settings.data.absolute()}", err=True)
+    with suppress(OSError):  # a log on a full disk does not stop the server
+        click.echo(
+            f"Crankwright at http://{place}:{settings.port}, data in {settings.data.absolute()}", err=True
+        )
     server.run(create_app(settings), settings)
+
+
+def _check_data(settings: Settings) -> None:
+    """Check that the database and the file store can be used; raise StorageError or OSError if not."""
+    folder = DataFolder(settings.data)
+    try:
+        require_sound(settings, folder)
+        if settings.artifacts_url is not None:
+            require_own_store(settings, folder)
+    finally:
+        folder.release()
 
 
 def _check_reach(settings: Settings, insecure: bool) -> None:

@@ -139,12 +139,16 @@ def _drop_nulls(operation: dict[str, Any]) -> None:
             parameter["schema"] = {**kinds[0], **schema}
 
 
+CHANGES = frozenset({"PATCH", "PUT", "DELETE"})
+"""The methods that need If-Match, where the route compares it."""
+
+
 def _declare_preconditions(method: str, operation: dict[str, Any]) -> None:
-    """Declare If-Match: PATCH and PUT need it, and every other route compares it if it is sent."""
+    """Declare If-Match: PATCH, PUT and DELETE need it; every other route compares it if it is sent."""
     matching = [one for one in operation.get("parameters", ()) if one["name"] == "if-match"]
     if not matching:
         return
-    is_change = method in ("patch", "put")
+    is_change = method.upper() in CHANGES
     matching[0]["required"] = is_change
     _refused(operation, *((412, 428) if is_change else (412,)))
 

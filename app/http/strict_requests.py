@@ -22,7 +22,7 @@ from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 from starlette.types import Receive, Scope, Send
 
-from app.http.openapi import operation_id
+from app.http.openapi import CHANGES, operation_id
 from app.http.pace import Pace
 from app.observation.secrets import MARK, holds_key, without_keys
 from app.plain import Json
@@ -169,7 +169,7 @@ class StrictRoute(APIRoute):
         super().__init__(path, endpoint, **{**options, **own})
         self.takes = frozenset(self.methods or ())
         reads_etag = any(one.alias.lower() == "if-match" for one in self.dependant.header_params)
-        self.needs_etag = bool(self.takes & {"PATCH", "PUT"}) or ("DELETE" in self.takes and reads_etag)
+        self.needs_etag = reads_etag and bool(self.takes & CHANGES)
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[object, None, Response]]:
         """Return FastAPI's handler, preceded by the checks."""

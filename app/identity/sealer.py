@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import logging
 import threading
+from collections.abc import Callable
 
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
-from app.identity.chain import seal
+from app.identity.chain import head, seal
 from app.storage.database import Database
 from app.storage.tables import AuditRow, Base
 from app.storage.units import Statement
@@ -32,6 +33,7 @@ class Sealer:
     def __init__(self, database: Database) -> None:
         self._database = database
         self._stopping = threading.Event()
+        self._fault = ""  # error of the last run; a fault that lasts is logged once
         self._thread = threading.Thread(target=self._work, name="audit-sealer", daemon=True)
 
     def start(self) -> None:
@@ -60,10 +62,33 @@ class Sealer:
         return seal(session)
 
     def _work(self) -> None:
+        self._attempt(self._record_head)
         more = True
         while more:
             more = not self._stopping.wait(PAUSE)
-            try:
-                self.run()
-            except Exception:
-                logger.exception("Rows of the audit could not be sealed; trying again in %g s", PAUSE)
+            self._attempt(self._seal_and_record)
+
+    def _seal_and_record(self) -> None:
+        if self.run():
+            self._record_head()
+
+    def _record_head(self) -> None:
+        """Write the newest sealed row beside the database, if it is a file in a data folder."""
+        if (record := self._database.record) is None:
+            return
+        with self._database.read() as session:
+            newest = head(session)
+        if newest.hash is not None:
+            record.note(newest.seq, newest.hash)
+
+    def _attempt(self, act: Callable[[], object]) -> None:
+        try:
+            act()
+        except Exception as error:
+            if self._fault != (fault := f"{type(error).__name__}: {error}"):
+                logger.exception("Rows of the audit cannot be sealed; trying again every %g s", PAUSE)
+            self._fault = fault
+        else:
+            if self._fault:
+                logger.warning("Rows of the audit are sealed again")
+            self._fault = ""

@@ -17,6 +17,7 @@ from app.maintenance.files import Files, FolderFiles
 from app.maintenance.folder import database_file, reading, refuse_other_schema
 from app.maintenance.rows import NamedFile, broken_references, broken_worksheets, named_files
 from app.storage.integrity import faults, is_damage, marker_of
+from app.storage.record import fault_of
 
 YOUNG = 60.0  # longest time between storing a file and committing its row [s]
 # by kind of file; of a build else
@@ -87,6 +88,8 @@ def check(data: Path, url: str | None, *, in_use: bool, files: Files | None = No
         findings.database.append(f"damage occurred while a service used it, see {marker.name}")
     try:
         findings.database += faults(path, MOST, mode="ro" if marker.exists() else "rw")
+        if not findings.database and (loss := fault_of(path)):
+            findings.database.append(f"{loss}; restore a backup, or run `crankwright accept`")
         with reading(path) as connection:
             refuse_other_schema(connection, older_too=True)
             findings.references += broken_references(connection)

@@ -10,10 +10,11 @@ from pathlib import Path
 
 from app.maintenance.errors import CannotRun
 from app.storage.engines import sqlite_file
-from app.storage.errors import StorageError
-from app.storage.folder import LOCK
+from app.storage.errors import DatabaseLost, StorageError
+from app.storage.folder import DATABASE, LOCK
 from app.storage.integrity import is_damage, marker_of
 from app.storage.migrations import known_schemas, refuse_unknown
+from app.storage.record import fault_of, opened_file
 
 NOT_SQLITE = (
     "The database is not SQLite, so lost files are not repaired here: the servers rebuild them when a client "
@@ -29,7 +30,7 @@ def database_file(data: Path, url: str | None) -> Path:
     CannotRun
         If there is none.
     """
-    path = sqlite_file(url) if url else data / "crankwright.sqlite"
+    path = sqlite_file(url) if url else data / DATABASE
     if path is None:
         raise CannotRun(NOT_SQLITE)
     if not path.is_file():
@@ -38,6 +39,8 @@ def database_file(data: Path, url: str | None) -> Path:
                 f"The database {path.absolute()} is missing, and {marker_of(path).name} notes that it was "
                 "lost while a service used it: restore the last backup into a new folder."
             )
+        if fault := fault_of(path):
+            raise CannotRun(str(DatabaseLost(path, fault, is_gone=True)))
         raise CannotRun(f"There is no database {path.absolute()}: name the data folder with --data.")
     return path
 
@@ -57,14 +60,11 @@ def is_in_use(data: Path) -> bool:
 @contextmanager
 def reading(path: Path) -> Iterator[sqlite3.Connection]:
     """Open a read-only connection to one snapshot; a service may use the file at the same time."""
-    connection = sqlite3.connect(f"{path.absolute().as_uri()}?mode=rw", uri=True, isolation_level=None)
-    try:
+    with opened_file(path, isolation_level=None) as connection:
         for pragma in ("busy_timeout = 10000", "query_only = on"):
             connection.execute(f"PRAGMA {pragma}")
         connection.execute("BEGIN")
         yield connection
-    finally:
-        connection.close()
 
 
 def refuse_other_schema(connection: sqlite3.Connection, *, older_too: bool) -> str:

@@ -27,6 +27,7 @@ from app.maintenance.folder import reading, refuse_other_schema
 from app.maintenance.rows import broken_references, named_files
 from app.plain import JsonObject
 from app.storage.integrity import faults
+from app.storage.record import write_first
 
 LARGEST_NOTE = 64 * 2**20  # limit for the manifest and the end entry, which names every missing file [bytes]
 _CHUNK = 2**20
@@ -69,6 +70,7 @@ def restore(archive: Path, data: Path, say: Say) -> RestoreResult:
         except BROKEN as error:
             raise CannotRun(f"{archive} is damaged or is not a backup of Crankwright: {error}.") from error
         say(f"verified: the database and {len(restored.artifacts)} artifacts")
+        write_first(folder / DATABASE)
         _sync_all(folder)
         os.rename(folder, data)
         _sync(data.absolute().parent)

@@ -14,6 +14,7 @@ from app.storage.errors import DatabaseUnavailable, NotForTeams
 from app.storage.folder import DataFolder
 from app.storage.integrity import refuse_damage
 from app.storage.migrations import migrate
+from app.storage.record import RecordKeeper, identity, require_kept, require_same
 
 FORMS = "postgresql+psycopg://user:password@host:5432/database"
 BACKENDS = ("sqlite", "postgresql", "postgres")
@@ -28,14 +29,33 @@ def opened_database(
     ------
     NotForTeams
         If the settings do not fit together; the text names the remedy.
-    DatabaseDamaged, DatabaseBeforeRelease, DatabaseNewer, DatabaseUnavailable
+    DatabaseLost, DatabaseDamaged, DatabaseBeforeRelease, DatabaseNewer, DatabaseUnavailable
         If the database cannot be used.
     """
     require_answer(settings)
-    url = settings.database_url or folder.database_url
-    refuse_damage(url)
+    url = require_sound(settings, folder)
     migrate(url)
-    return Database(url, on_commit, settings.database_pool)
+    database = Database(url, on_commit, settings.database_pool)
+    if settings.database_url is None:
+        database.record = RecordKeeper(folder.database, database.write(identity))
+    return database
+
+
+def require_sound(settings: Settings, folder: DataFolder) -> str:
+    """Check that the database is intact and, in a data folder, the one it had; return its URL.
+
+    Raises
+    ------
+    DatabaseLost, DatabaseDamaged
+        If it is not; the text names the remedy.
+    """
+    if settings.database_url is not None:
+        refuse_damage(settings.database_url)
+        return settings.database_url
+    require_kept(folder.database)
+    refuse_damage(folder.database_url)
+    require_same(folder.database)
+    return folder.database_url
 
 
 def require_answer(settings: Settings) -> None:

@@ -11,8 +11,9 @@ from contextlib import contextmanager
 from sqlalchemy.orm import Session
 
 from app.storage.clock import OperationClock, SharedClock
-from app.storage.engines import is_sqlite, reading_engine, writing_engine
+from app.storage.engines import is_sqlite, reading_engine, sqlite_file, writing_engine
 from app.storage.group_writer import GroupWriter, Watch
+from app.storage.record import RecordKeeper, before_close
 from app.storage.units import READS, T, Unit, Writer, after_commit, repeatable
 
 __all__ = ["Database", "Unit", "after_commit", "repeatable"]
@@ -38,6 +39,8 @@ class Database:
         self.url = url
         self.is_shared = not is_sqlite(url)
         """Whether several servers may use this database at the same time."""
+        self.record: RecordKeeper | None = None
+        """The record beside the file, if this process keeps it."""
         self.watch = Watch(url)
         self._reader = reading_engine(url, pool)
         self._info = {} if self.is_shared else {READS: True}
@@ -111,8 +114,16 @@ class Database:
         self.clock.close()
         self._writer.close()
         if self.watch.damage is None:
+            self._before_close()
             self._reader.dispose()
             self._writer.engine.dispose()
+
+    def _before_close(self) -> None:
+        record, self.record = self.record, None
+        if record is not None:
+            record.close()
+        elif (file := sqlite_file(self.url)) is not None:
+            before_close(file)
 
 
 def _raise_if_unavailable(error: BaseException) -> None:

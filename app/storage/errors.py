@@ -10,6 +10,7 @@ StorageError
  ├── DatabaseUnavailable   the database server cannot be reached, or refuses work at present
  ├── NotForTeams           the settings do not let several servers share the data
  ├── DatabaseDamaged       pages or rows of the database cannot be read as they were written
+ ├── DatabaseLost          the database of a data folder is missing, or is not the one it had
  ├── ArtifactMissing       no artifact has this hash
  ├── ArtifactDamaged       the bytes of an artifact no longer have its hash
  ├── ArtifactsUnreachable  the store of the artifacts does not answer now
@@ -115,6 +116,22 @@ class DatabaseDamaged(StorageError):
             "Stop the service, keep a copy of the data folder, then restore the last backup with "
             "`crankwright restore FILE --data NEW_FOLDER`, or save what is readable with "
             "`sqlite3 crankwright.sqlite .recover | sqlite3 recovered.sqlite`."
+        )
+
+
+class DatabaseLost(StorageError):
+    """The database of a data folder is missing, is another one, or lacks what it contained."""
+
+    def __init__(self, file: Path, fault: str, is_gone: bool = False) -> None:
+        super().__init__(file, fault, is_gone)
+        self.file, self.fault, self.is_gone = file, fault, is_gone
+
+    def __str__(self) -> str:
+        wish = "start with a new, empty database" if self.is_gone else "accept the database as it is"
+        return (
+            f"{self.file.parent} does not contain its database: {self.fault}. Nothing was changed. Keep a "
+            "copy of the folder. Restore the last backup with `crankwright restore FILE --data NEW_FOLDER`; "
+            f"or, to {wish}, run `crankwright accept --data {self.file.parent}`."
         )
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from app.storage.errors import DataFolderInUse
 
 LOCK = "crankwright.lock"
+DATABASE = "crankwright.sqlite"
 
 
 class DataFolder:
@@ -28,9 +29,14 @@ class DataFolder:
         self._acquire()
 
     @property
+    def database(self) -> Path:
+        """Return the path of the SQLite file in this folder."""
+        return self.path / DATABASE
+
+    @property
     def database_url(self) -> str:
         """Return the SQLAlchemy URL of the SQLite file in this folder."""
-        return f"sqlite:///{self.path / 'crankwright.sqlite'}"
+        return f"sqlite:///{self.database}"
 
     @property
     def artifacts(self) -> Path:

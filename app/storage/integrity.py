@@ -9,7 +9,6 @@ from __future__ import annotations
 import sqlite3
 import threading
 from collections.abc import Iterator
-from contextlib import closing
 from itertools import islice
 from pathlib import Path
 
@@ -17,6 +16,7 @@ from sqlalchemy.exc import DBAPIError
 
 from app.storage.engines import sqlite_file
 from app.storage.errors import DatabaseDamaged
+from app.storage.record import opened_file
 from app.storage.tables import Base, JsonText, NotWritten
 
 MOST = 5  # largest number of faults in a message
@@ -79,7 +79,7 @@ def _noted(marker: Path) -> str:
 
 def faults(path: Path, most: int = MOST, mode: str = "rw") -> list[str]:
     """Return at most `most` faults of a SQLite file, one per line; with mode `ro` its log is not changed."""
-    with closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode={mode}", uri=True)) as connection:
+    with opened_file(path, mode) as connection:
         connection.execute("PRAGMA busy_timeout = 10000")
         # If SQLite stops at a page, it drops the earlier lines, unless only one was requested.
         one = _collected(_of_pages(connection, 1), path)

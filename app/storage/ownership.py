@@ -5,22 +5,14 @@ A database that several servers or a bucket use has an identity; the store conta
 
 from __future__ import annotations
 
-import secrets
-
-from sqlalchemy import select
-from sqlalchemy.orm import Session
-
 from app.settings import Settings
 from app.storage.artifacts import OWNER, Artifacts
 from app.storage.connection import opened_database
 from app.storage.database import Database
 from app.storage.errors import StoreRefused
 from app.storage.folder import DataFolder
+from app.storage.record import identity
 from app.storage.stores import opened_store
-from app.storage.tables import CounterRow
-from app.storage.units import insert_new, repeatable
-
-NAME = "database"  # name of the row with the identity
 
 
 def claim(database: Database, store: Artifacts) -> None:
@@ -33,7 +25,7 @@ def claim(database: Database, store: Artifacts) -> None:
     ArtifactsUnreachable
         If it does not answer.
     """
-    own = database.write(_identity)
+    own = database.write(identity)
     if (owner := store.claim(own)) != own:
         raise StoreRefused(
             f"CRANKWRIGHT_ARTIFACTS_URL: these files belong to another database ({owner[:40]}; this one is "
@@ -56,11 +48,3 @@ def require_own_store(settings: Settings, folder: DataFolder) -> None:
         claim(database, store)
     finally:
         database.close()
-
-
-def _identity(session: Session) -> str:
-    """Return the identity of a database, created at random at the first request; backups share it."""
-    repeatable(session)
-    insert_new(session, CounterRow(name=NAME, value=secrets.randbits(63)))
-    number = session.scalars(select(CounterRow.value).where(CounterRow.name == NAME)).one()
-    return f"{number:016x}"

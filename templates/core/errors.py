@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from itertools import islice
 from reprlib import Repr
 from typing import Any
 
@@ -123,8 +122,10 @@ class FaultyText(TemplateError):
         return Fault(name, self.code, str(self))
 
 
-def unknown_name(name: str, candidates: Iterable[str], kind: str) -> Fault:
-    """Return a fault for an undeclared name, with the nearest declared name."""
+def unknown_name(name: str, candidates: Iterable[str], kind: str, *, suggests: bool = True) -> Fault:
+    """Return a fault for an undeclared name, with the nearest declared name if it `suggests` one."""
+    if not suggests:
+        return Fault(plain(name), "unknown_name", f"{kind} {plain(name)!r} is unknown")
     near = nearest(name, candidates := list(candidates))
     if (whole := name.replace("radial_clearance", "diametral_clearance")) != name and whole in candidates:
         remedy = f"give {whole}, which is twice the radial clearance"
@@ -134,12 +135,11 @@ def unknown_name(name: str, candidates: Iterable[str], kind: str) -> Fault:
 
 
 def unknown_names(names: Iterable[str], candidates: Iterable[str], kind: str) -> list[Fault]:
-    """Return a fault for each undeclared name; the first one suggests the nearest declared names."""
+    """Return a fault for each undeclared name; the first ones suggest the nearest declared names."""
     if not (unknown := list(names)):
         return []
-    declared, each = list(candidates), iter(unknown)
-    faults = [unknown_name(name, declared, kind) for name in islice(each, MOST_SUGGESTED)]
-    return faults + [Fault(plain(n), "unknown_name", f"{kind} {plain(n)!r} is unknown") for n in each]
+    declared = list(candidates)
+    return [unknown_name(name, declared, kind, suggests=n < MOST_SUGGESTED) for n, name in enumerate(unknown)]
 
 
 def listed(names: Sequence[str]) -> str:

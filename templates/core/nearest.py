@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable
 from difflib import get_close_matches
+from functools import lru_cache
 from heapq import nlargest
 from itertools import islice
 
@@ -25,4 +26,9 @@ def nearest(name: str, declared: Iterable[str]) -> list[str]:
 
 def _shared(letters: Counter[str], other: str) -> float:
     """Return the fraction of letters that two names have in common, in any order."""
-    return 2 * (letters & Counter(other)).total() / max(1, letters.total() + len(other))
+    return 2 * (letters & _letters(other)).total() / max(1, letters.total() + len(other))
+
+
+@lru_cache(maxsize=4 * MOST_COMPARED)
+def _letters(name: str) -> Counter[str]:
+    return Counter(name)

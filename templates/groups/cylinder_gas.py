@@ -32,6 +32,7 @@ from templates.physics.engine.gas_checks import (
     table_closes,
     table_is_known,
     valves_in_order,
+    work_between_points,
 )
 from templates.physics.engine.gas_cycle import Charge, Valves
 from templates.physics.engine.gas_pressure import GasCycle
@@ -155,6 +156,12 @@ class CylinderGas(Template):
         is_gauge = (self.p_low < self.p_absolute) | (self.p_0 > 0)
         return is_gauge & ((self.p_low >= 0) | (self.p_0 < self.p_ambient))
 
+    @require("pressure", warning="coarse_table",
+             remedy="give more points where the pressure is high, such as every 5 deg")  # fmt: skip
+    def table_shows_its_work(self) -> Truth:
+        """The table misses at most 2 % of the cycle's work between its points."""
+        return self.x_missed <= 0.02
+
     @require("speed", warning="reversed_cycle", remedy="a gas cycle then runs backwards, and takes up work")
     def runs_forwards(self) -> Truth:
         """The crank angle increases with time."""
@@ -174,6 +181,11 @@ class CylinderGas(Template):
     def p_low(self) -> Array:
         """Return the lowest pressure of the table."""
         return lowest_of_table(self.gas_cycle, self.p_t)
+
+    @shared(unit="1")
+    def x_missed(self) -> Array:
+        """Return the estimated share of its work that the table misses between its points."""
+        return work_between_points(self.gas_cycle, self.strokes, self.theta_p, self.p_t)
 
     @shared(unit="bar")
     def p_absolute(self) -> Array:

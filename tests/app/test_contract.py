@@ -81,8 +81,9 @@ def test_preconditions_are_declared(http):
     described = http.get("/openapi.json").json()
     sent = {name: one["required"] for name, one in parameters(described) if one["name"] == "if-match"}
     required = {name.split()[0]: is_required for name, is_required in sent.items()}
-    assert required == {"patch": True, "put": True, "post": False, "delete": False}
-    assert {"412", "428"} <= set(described["paths"][f"{API}/designs/{{id}}"]["patch"]["responses"])
+    assert required == {"patch": True, "put": True, "post": False, "delete": True}
+    for method in ("patch", "delete"):
+        assert {"412", "428"} <= set(described["paths"][f"{API}/designs/{{id}}"][method]["responses"])
     for path in ("auto-map", "revisions/{number}/restore"):
         assert "412" in described["paths"][f"{API}/designs/{{id}}/{path}"]["post"]["responses"]
 

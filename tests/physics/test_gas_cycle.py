@@ -6,6 +6,7 @@ import pytest
 from templates.bearing_load.bearing_load_v1 import BearingLoad
 from templates.core.errors import InvalidInputs
 from templates.core.language.evaluate import evaluate
+from templates.physics.engine.gas_checks import _work, work_between_points
 
 BASE = {**BearingLoad.example, "crank_angle_step": "1 deg"}
 IDEAL = {**BASE, "compression_exponent": 1.4, "expansion_exponent": 1.4, "suction_pressure": "1 bar",
@@ -187,3 +188,23 @@ class TestRefusals:
     def test_property_diesel_without_cutoff_does_no_work(self):
         out = evaluate(BearingLoad, {**IDEAL, "gas_cycle": "diesel", "cutoff": 1})
         assert out.outputs["mean_torque"].value == pytest.approx(0, abs=1e-9)
+
+
+@pytest.mark.parametrize("step", [5, 10, 20, 24, 30, 36, 40, 45])
+def test_the_work_that_a_table_misses_is_estimated(step):
+    """The pressure is a bell of 60° behind dead centre; the tables begin at 16 angles within their step."""
+    bell = lambda angle: 1e5 + 60e5 * np.exp(-(((angle % 720 - 375) / 30) ** 2))  # noqa: E731
+    fine, true, stated = np.arange(0, 720, 0.25), [], []
+    whole = _work(np.radians(fine), bell(fine), 4 * np.pi)
+    for shift in np.linspace(0, step, 16, endpoint=False):
+        angle = np.arange(shift, 720 + shift - 1e-9, step)
+        true.append(abs(_work(np.radians(angle), bell(angle), 4 * np.pi) / whole - 1))
+        missed = work_between_points("table", np.asarray(4.0), np.radians(angle), bell(angle))
+        stated.append(missed.item())
+    assert max(true) < 1.5 * max(stated)
+    assert max(stated) < 0.02 or step > 10
+
+
+@pytest.mark.parametrize("p", [np.full(24, 1e5), np.zeros(9)])
+def test_a_constant_pressure_misses_no_work(p):
+    assert work_between_points("table", np.asarray(4.0), np.asarray(np.nan), p) == 0.0

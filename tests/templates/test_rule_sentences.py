@@ -19,6 +19,8 @@ GAUGE = {
     "crankcase_pressure": "0 bar",
 }
 
+COARSE = {**GAUGE, "crankcase_pressure": "1 bar"}
+
 
 def hole(part):
     return {f"{part}_hole_length": "6 mm", f"{part}_hole_arc": "4 mm", f"{part}_hole_angle": "0 deg"}
@@ -56,6 +58,7 @@ VIOLATED = [  # a template, the input that the warning names, and what violates 
     ("flywheel", "crank_mass",
      {"crank_mass": "0 kg", "crankpin_mass": "0 kg", "counterweight_mass": "0 kg"}, {}),
     ("engine", "crank_unbalance", MASSLESS, {}),
+    *[(id, "pressure", COARSE, {}) for id in ("bearing_load", "engine", "flywheel")],
     *[(id, "pressure", GAUGE, {}) for id in ("bearing_load", "engine", "flywheel")],
     *[(id, f"{part}_hole_length", hole(part), LIFT) for part in ("pin", "sleeve") for id in CYCLES],
     *[(id, "supply_pressure", UNFED, LIFT) for id in CYCLES],

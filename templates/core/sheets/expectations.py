@@ -8,7 +8,6 @@ from typing import Any
 import lark
 import numpy as np
 
-from templates.core.errors import unknown_name
 from templates.core.language.spec import Choice, Declaration, Derived, Formula, Given, Text
 from templates.core.sheets.body import TreeBody
 from templates.core.sheets.clauses import words_of
@@ -56,7 +55,7 @@ def _declared(
         raise FollowsFromFault(str(name))
     if not isinstance(declared, kinds) or isinstance(declared, Text):
         fitting = (own for own, one in every.items() if isinstance(one, kinds) and not isinstance(one, Text))
-        fault = unknown_name(str(name), fitting, wanted)
+        fault = reader.names.unknown(str(name), fitting, wanted)
         message, remedy = (
             f"{fault.name[:60]} is not {wanted} of this worksheet",
             fault.detail.partition("; ")[2],

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
-from templates.core.errors import FaultyText, unknown_name
+from templates.core.errors import MOST_SUGGESTED, Fault, FaultyText, unknown_name
 from templates.core.language.template import Template
 from templates.core.sheets.design_names import DesignName
 from templates.core.sheets.faults import FollowsFromFault
@@ -47,6 +47,7 @@ class Names:
     broken: set[str] = field(default_factory=set)  # names whose statement has a fault
     parameters: dict[str, Part] = field(default_factory=dict)  # of the function that is being expanded
     fuel: int = FUEL
+    faults: int = 0  # unknown names so far
     design: Mapping[str, DesignName] | None = None  # for the worksheet of a design, the values it may use
     used: set[str] = field(default_factory=set)  # those that its lines use
 
@@ -75,8 +76,12 @@ class Names:
         if self.design and text in self.design:
             self.used.add(text)
             return Name(self.design[text].attribute), self.design[text].sort
-        fault = unknown_name(text, self._known(), "name")
-        raise FaultyText("unknown_name", fault.detail)
+        raise FaultyText("unknown_name", self.unknown(text, self._known(), "name").detail)
+
+    def unknown(self, text: str, candidates: Iterable[str], kind: str) -> Fault:
+        """Return a fault for a name; only the first ones of a worksheet suggest the nearest names."""
+        self.faults += 1
+        return unknown_name(text, candidates, kind, suggests=self.faults <= MOST_SUGGESTED)
 
     def _known(self) -> list[str]:
         """Return every name that an expression may use here, as it is written."""

@@ -3,6 +3,7 @@
 import pytest
 from click.testing import CliRunner
 from components import ON_POSTGRESQL
+from patience import until
 from sqlalchemy import text
 from sqlalchemy.exc import DatabaseError
 
@@ -85,6 +86,24 @@ def test_unsealed_rows_are_counted_and_sealed_when_the_service_stops(database):
     sealer.start()
     sealer.stop()
     assert verified(database).unsealed == 0
+
+
+def test_a_fault_of_the_sealer_that_lasts_is_logged_once(database, monkeypatch, caplog):
+    monkeypatch.setattr("app.identity.sealer.PAUSE", 0.005)
+    tries = []
+
+    def fails(self):
+        tries.append(1)
+        raise OSError("no space left")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Sealer, "run", fails)
+        sealer = Sealer(database)
+        sealer.start()
+        until(lambda: len(tries) > 5)
+    until(lambda: "sealed again" in caplog.text)
+    sealer.stop()
+    assert caplog.text.count("cannot be sealed") == 1
 
 
 def test_a_unit_that_fails_leaves_no_row(database):

@@ -179,12 +179,13 @@ def test_some_words_are_no_ids(http, id):
 
 def test_a_draft_can_be_deleted_and_a_release_not(http):
     sheet = drafted(http)
-    assert http.delete(place(sheet["id"])).status_code == 204
+    problem(http.delete(place(sheet["id"])), 428, "precondition-required")
+    assert http.delete(place(sheet["id"]), headers={"If-Match": "*"}).status_code == 204
     problem(http.get(place(sheet["id"])), 404, "not-found")
     first = released(http)
-    problem(http.delete(place(first["id"])), 409, "out-of-order")
+    problem(http.delete(place(first["id"]), headers={"If-Match": "*"}), 409, "out-of-order")
     edited(http, first, WIDER)
-    assert http.delete(place(first["id"])).status_code == 204
+    assert http.delete(place(first["id"]), headers={"If-Match": "*"}).status_code == 204
     assert http.get(place(first["id"])).json()["state"] == "released"
 
 

@@ -153,7 +153,7 @@ class TestDrafts:
         headers = {"If-Match": f'"{design["revision"]}"'}
         refused = http.patch(f"{API}/designs/{design['id']}", json=change, headers=headers)
         assert faults(refused) == {"steps.duty": "unreleased"}
-        http.delete(place(bush["id"]))
+        http.delete(place(bush["id"]), headers={"If-Match": "*"})
 
     def test_a_faulty_draft_says_so_in_previews(self, http, bush):
         design = created(http, design_of(bush["id"]))

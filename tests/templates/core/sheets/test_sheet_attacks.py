@@ -2,6 +2,7 @@
 
 import pytest
 
+from templates.core.errors import MOST_SUGGESTED
 from templates.core.sheets import SheetRefused, read
 
 SHEET = """# Hostile
@@ -196,3 +197,18 @@ def test_a_check_that_is_too_long_by_the_names_of_its_inputs_is_refused():
     (fault,) = faults(SHEET + text)
     assert (fault.code, fault.line) == ("check", FIRST + 1)
     assert "at most 2000 characters" in fault.message
+
+
+def test_the_nearest_names_are_sought_for_the_first_unknown_ones_only(monkeypatch):
+    """A text of near misses took 8.5 s: all names were compared with each of them."""
+    sought = []
+    monkeypatch.setattr("templates.core.errors.nearest", lambda name, declared: sought.append(name) or [])
+    names = [f"{'ab' * 22}{number:03}" for number in range(100)]
+    lines = ["# Near misses", 'given F [kN] "load" (example 25 kN)']
+    lines += [f'{name} [kN] = F "v {name[-3:]}"' for name in names]
+    lines += [f'z{name[-3:]} [kN] = {name}x "w {name[-3:]}"' for name in names]
+    lines += [f'test "t {name[-3:]}" with F = 25 kN gives {name}y = 25 kN within 0.2 %' for name in names]
+    with pytest.raises(SheetRefused) as refused:
+        read("\n".join(lines))
+    assert [fault.code for fault in refused.value.faults] == ["unknown_name"] * 200
+    assert len(sought) == MOST_SUGGESTED
