@@ -84,6 +84,9 @@ class Client(BlockingConnection):
         printable ASCII characters. The default is `user@host`.
     key
         Key that authenticates the requests, `cw_…`; a service with keys requires one.
+    patience
+        Longest total wait of one request while the service is busy (429, or 503 where sending again cannot
+        repeat a change) [s]. The client waits for the time in `Retry-After`; 0 raises `Problem` at once.
 
     Raises
     ------

@@ -2,17 +2,52 @@
 
 from __future__ import annotations
 
+import asyncio
+import time
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Self, TypedDict, TypeVar
 
 import httpx
 
-from app.client.exchange import Exchange, Query, Request
+from app.client.exchange import Exchange, Query, Request, job_of
 from app.client.names import CLIENT_HEADER, authorization, checked_name
 
 _RETRIES = 3  # attempts of the transport to open a refused connection
+PATIENCE = 60.0  # longest total wait for one request [s]
+_SHORTEST = 0.1  # also bounds the number of attempts [s]
+_REPEATABLE = frozenset({"GET", "HEAD"})
 
 Result = TypeVar("Result")
+
+
+@dataclass
+class Patience:
+    """The time that one request may still wait [s].
+
+    A 429 refuses a request before any work. A 503 may come after a change was stored, so only requests that
+    change nothing, or whose Idempotency-Key prevents a second change, are sent again.
+    """
+
+    left: float
+
+    def wait(self, request: Request, response: httpx.Response) -> float | None:
+        """Return the time after which to send a request again [s]; None if its response is final."""
+        stated = response.headers.get("Retry-After", "")
+        if not (stated.isdecimal() and stated.isascii()) or not _may_repeat(request, response):
+            return None
+        seconds = max(_SHORTEST, float(stated))
+        if seconds > self.left:
+            return None
+        self.left -= seconds
+        return seconds
+
+
+def _may_repeat(request: Request, response: httpx.Response) -> bool:
+    if response.status_code == 429:
+        return True
+    is_safe = request.method in _REPEATABLE or request.is_safe or "Idempotency-Key" in request.headers
+    return response.status_code == 503 and is_safe and job_of(response) is None
 
 
 class _Options(TypedDict):
@@ -38,9 +73,15 @@ class _Connection:
     """The address of the service, and the name and key of the client."""
 
     def __init__(
-        self, url: str, *, timeout: float = 60.0, name: str | None = None, key: str | None = None
+        self,
+        url: str,
+        *,
+        timeout: float = 60.0,
+        name: str | None = None,
+        key: str | None = None,
+        patience: float = PATIENCE,
     ) -> None:
-        self.url, self.name = url, checked_name(name)
+        self.url, self.name, self.patience = url, checked_name(name), patience
         self._options: _Options = {
             "base_url": url,
             "timeout": timeout,
@@ -64,9 +105,15 @@ class BlockingConnection(_Connection):
     """A connection that sends one request at a time and blocks until the response arrives."""
 
     def __init__(
-        self, url: str, *, timeout: float = 60.0, name: str | None = None, key: str | None = None
+        self,
+        url: str,
+        *,
+        timeout: float = 60.0,
+        name: str | None = None,
+        key: str | None = None,
+        patience: float = PATIENCE,
     ) -> None:
-        super().__init__(url, timeout=timeout, name=name, key=key)
+        super().__init__(url, timeout=timeout, name=name, key=key, patience=patience)
         transport = httpx.HTTPTransport(retries=_RETRIES)
         self._http = httpx.Client(transport=transport, **self._options)
 
@@ -98,6 +145,13 @@ class BlockingConnection(_Connection):
             return result
 
     def _send(self, request: Request) -> httpx.Response:
+        """Send a request, and again after the stated time while the service is busy."""
+        patience = Patience(self.patience)
+        while (wait := patience.wait(request, response := self._sent(request))) is not None:
+            time.sleep(wait)
+        return response
+
+    def _sent(self, request: Request) -> httpx.Response:
         parts = message(request)
         if request.listen is None:
             return self._http.request(**parts)
@@ -114,9 +168,15 @@ class AwaitedConnection(_Connection):
     """A connection that sends a request and awaits its response."""
 
     def __init__(
-        self, url: str, *, timeout: float = 60.0, name: str | None = None, key: str | None = None
+        self,
+        url: str,
+        *,
+        timeout: float = 60.0,
+        name: str | None = None,
+        key: str | None = None,
+        patience: float = PATIENCE,
     ) -> None:
-        super().__init__(url, timeout=timeout, name=name, key=key)
+        super().__init__(url, timeout=timeout, name=name, key=key, patience=patience)
         transport = httpx.AsyncHTTPTransport(retries=_RETRIES)
         self._http = httpx.AsyncClient(transport=transport, **self._options)
 
@@ -148,6 +208,13 @@ class AwaitedConnection(_Connection):
             return result
 
     async def _send(self, request: Request) -> httpx.Response:
+        """Send a request, and again after the stated time while the service is busy."""
+        patience = Patience(self.patience)
+        while (wait := patience.wait(request, response := await self._sent(request))) is not None:
+            await asyncio.sleep(wait)
+        return response
+
+    async def _sent(self, request: Request) -> httpx.Response:
         parts = message(request)
         if request.listen is None:
             return await self._http.request(**parts)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Generator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 import httpx
@@ -38,7 +38,10 @@ Query = Mapping[str, str] | tuple[tuple[str, str], ...]
 
 @dataclass(frozen=True)
 class Request:
-    """A request; `listen` receives every line of a streamed response, which has no time-out."""
+    """A request; `listen` receives every line of a streamed response, which has no time-out.
+
+    `is_safe` states that a POST changes nothing, as a calculation.
+    """
 
     method: str
     path: str
@@ -46,6 +49,7 @@ class Request:
     params: Query = field(default_factory=dict)
     headers: Mapping[str, str] = field(default_factory=dict)
     listen: Callable[[str], None] | None = None
+    is_safe: bool = False
 
 
 Exchange = Generator[Request, httpx.Response, Result]
@@ -121,7 +125,7 @@ def calculated(model: type[Model], request: Request, on_progress: Progress | Non
 
 def calculation(request: Request, on_progress: Progress | None = None) -> Exchange[httpx.Response]:
     """Return the response to a calculation; if the service made it a job, wait for the job."""
-    response = yield request
+    response = yield replace(request, is_safe=True)
     if job := job_of(response):
         yield from done(job, on_progress)
         response = yield from awaited(get(f"/evaluations/{job}"), on_progress)

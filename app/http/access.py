@@ -38,6 +38,8 @@ HEALTH = frozenset({"/healthz", "/readyz"})
 """Paths that answer everyone, whether or not the database can be reached."""
 STILL = "crankwright.still"
 """Key of an ASGI scope: a function that checks whether the key or session still has the same roles."""
+SETTLE = "crankwright.settle"
+"""Key of an ASGI scope: a function that takes the processor time of the request when it ends [s]."""
 _SCHEME = b"bearer"
 _BEARER = re.compile(rb"bearer +([!-~]{1,200})", re.IGNORECASE)
 _SIGN_IN_COOKIE = re.compile(rb"(?:^|;) *" + SIGN_IN.encode() + rb"=([A-Za-z0-9_-]{43})(?:;|$)")
@@ -55,7 +57,7 @@ async def identify(scope: Scope) -> Principal:
     KeyInAddress
         If the path or the query contains a key.
     LimitReached
-        If the principal has sent too many requests.
+        If the principal has used up its processor time, and another principal uses the server.
     DatabaseUnavailable
         If the database cannot be reached.
     """
@@ -74,7 +76,7 @@ async def identify(scope: Scope) -> Principal:
     if guest:
         scope[STILL] = partial(_is_still, door, scope, who)
         scope[FORM_TOKEN] = guest.form_token
-        door.count(guest)
+        scope[SETTLE] = door.admit(guest)
     return who
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Awaitable, Callable, Container, Coroutine, Iterator, Mapping
+from inspect import iscoroutinefunction
 from itertools import islice
 from json import JSONDecodeError
 from typing import TYPE_CHECKING, Any
@@ -24,6 +25,7 @@ from starlette.types import Receive, Scope, Send
 
 from app.http.openapi import CHANGES, operation_id
 from app.http.pace import Pace
+from app.observation.processor_time import metered
 from app.observation.secrets import MARK, holds_key, without_keys
 from app.plain import Json
 from app.workers.pieces import PIECE
@@ -173,6 +175,8 @@ class StrictRoute(APIRoute):
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[object, None, Response]]:
         """Return FastAPI's handler, preceded by the checks."""
+        if not iscoroutinefunction(self.endpoint):  # FastAPI calls it in a thread
+            self.dependant.call = metered(self.endpoint)
         handler = super().get_route_handler()
 
         async def strict(request: Request) -> Response:

@@ -10,6 +10,7 @@ import asyncio
 import time
 from collections import Counter
 from collections.abc import Callable
+from functools import partial
 from math import ceil
 
 from cachetools import LRUCache, TTLCache
@@ -30,7 +31,7 @@ _NO_PREFIX = ""
 
 
 class Door:
-    """Verifies keys and sessions, and counts the requests of each principal."""
+    """Verifies keys and sessions, and counts the requests and processor time of each principal."""
 
     def __init__(self, database: Database, settings: Settings) -> None:
         self._database, self._settings = database, settings
@@ -67,16 +68,17 @@ class Door:
         hash = digest(token)
         return await self._guest(hash, lambda: self._signed_in(hash))
 
-    def count(self, guest: Guest) -> None:
-        """Count a request of a principal.
+    def admit(self, guest: Guest) -> Callable[[float], None]:
+        """Count a request of a principal; return the function that takes its processor time at its end [s].
 
         Raises
         ------
         LimitReached
-            If the principal has sent too many requests.
+            If the principal has used up its processor time, and another principal uses the server.
         """
-        limits = limits_of(self._settings, guest.limits)
-        self._rate.take(guest.principal, limits.requests_per_minute)
+        budget = limits_of(self._settings, guest.limits).processor_seconds
+        self._rate.admit(guest.principal, budget)
+        return partial(self._rate.settle, guest.principal, budget)
 
     async def _guest(self, hash: str, find: Callable[[], Guest | None]) -> Guest | None:
         """Return the guest for this hash, taken from the cache or returned by `find`.
@@ -119,40 +121,60 @@ class Door:
 
 
 _MOST_PRINCIPALS = 10_000  # principals with a bucket
+_PRESENT = 2.0  # a principal uses the server for this time after its last request [s]
+_LEAST = 5e-4  # processor time of a request with what the measurement leaves out, such as the socket [s]
+_LONGEST_WAIT = 10.0  # for a bucket to fill up to zero [s]
 
 
 class Rate:
-    """A token bucket for each principal; only the event loop uses it.
+    """A bucket of processor time for each principal; only the event loop uses it.
 
-    `counts` is the number of admitted requests of each principal since the last call of `counted`.
+    A bucket holds the budget of one minute at most. A request costs its processor time when it ends. An
+    empty bucket refuses requests only while another principal uses the server.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
         self._buckets: LRUCache[str, tuple[float, float]] = LRUCache(
             _MOST_PRINCIPALS
-        )  # tokens left, and the time of that count
+        )  # seconds left, and the time of that count
         self._counts: Counter[str] = Counter()
+        self._last, self._last_at, self._before = "", -_PRESENT, -_PRESENT
 
-    def take(self, who: Principal, per_minute: float) -> None:
-        """Take one request from the principal's bucket.
+    def admit(self, who: Principal, budget: float) -> None:
+        """Admit and count a request of a principal with a budget [s/min].
 
         Raises
         ------
         LimitReached
-            If the bucket is empty.
+            If the bucket is empty, and another principal uses the server.
         """
         present = self._clock()
-        left, at = self._buckets.get(who.id, (per_minute, present))
-        tokens = min(per_minute, left + (present - at) * per_minute / 60)
-        if tokens < 1:
-            self._buckets[who.id] = tokens, present
-            wait = max(1, ceil((1 - tokens) * 60 / per_minute))
-            raise LimitReached(f"{who.name} may send {per_minute:g} requests a minute", wait)
-        self._buckets[who.id] = tokens - 1, present
+        is_alone = self._is_alone(who.id, present)
+        if (left := self._left(who.id, budget, present)) <= 0 and not is_alone:
+            wait = max(1, ceil(-left * 60 / budget))
+            text = f"{who.name} may use {budget:g} s of processor time a minute while others use the server"
+            raise LimitReached(text, wait)
         self._counts[who.id] += 1
+
+    def settle(self, who: Principal, budget: float, seconds: float) -> None:
+        """Take the processor time of a request from the principal's bucket [s]."""
+        present = self._clock()
+        left = self._left(who.id, budget, present) - max(_LEAST, seconds)
+        self._buckets[who.id] = max(left, -_LONGEST_WAIT * budget / 60), present
 
     def counted(self) -> Counter[str]:
         """Return the number of admitted requests of each principal since the last call."""
         counts, self._counts = self._counts, Counter()
         return counts
+
+    def _left(self, id: str, budget: float, present: float) -> float:
+        left, at = self._buckets.get(id, (budget, present))
+        return min(budget, left + (present - at) * budget / 60)
+
+    def _is_alone(self, id: str, present: float) -> bool:
+        """Note a request; return whether no other principal has sent one recently."""
+        if id != self._last:
+            self._last, self._before = id, self._last_at
+        self._last_at = present
+        return present - self._before >= _PRESENT

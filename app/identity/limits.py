@@ -17,8 +17,8 @@ class Limits:
 
     Parameters
     ----------
-    requests_per_minute
-        Requests to one server [1/min].
+    processor_seconds
+        Processor time of requests to one server, while another principal uses that server [s/min].
     storage_mb
         Content that the principal was the first to store: files of builds, surfaces of analyses, imported
         files, tables and rows of studies, texts of worksheets. Deleted content still counts. Documents of
@@ -29,7 +29,7 @@ class Limits:
         Largest number of waiting jobs.
     """
 
-    requests_per_minute: float
+    processor_seconds: float
     storage_mb: float
     calculation_seconds: float
     queued_jobs: int
@@ -41,7 +41,7 @@ NAMES = tuple(field.name for field in fields(Limits))
 def limits_of(settings: Settings, own: Mapping[str, object] | None) -> Limits:
     """Return the limits of a principal: its own values where it has them, otherwise those of the settings."""
     general = {
-        "requests_per_minute": settings.principal_rate,
+        "processor_seconds": settings.principal_processor_seconds,
         "storage_mb": settings.principal_storage_mb,
         "calculation_seconds": settings.principal_seconds,
         "queued_jobs": settings.client_queue_limit,

@@ -150,6 +150,14 @@ class Settings(BaseSettings):
     )
     drain_seconds: float = Field(10.0, gt=0, description="longest time from SIGTERM to the end [s]")
     connections: int = Field(1000, gt=0, description="connections at the same time; others get 503")
+    connections_per_address: int = Field(
+        200,
+        gt=0,
+        description=(
+            "connections of one address at the same time, or requests that a trusted proxy forwards for it; "
+            "others get 503"
+        ),
+    )
     header_seconds: float = Field(
         10.0, gt=0, description="longest time for receiving the header of a request [s]"
     )
@@ -169,8 +177,11 @@ class Settings(BaseSettings):
     oidc_client: str | None = Field(None, description="client id of this service at that provider")
     oidc_secret: SecretStr | None = Field(None, description="client secret of this service at that provider")
     session_hours: float = Field(12, gt=0, description="how long a browser stays signed in [h]")
-    principal_rate: float = Field(
-        600, gt=0, description="largest request rate of one principal; further requests get 429 [1/min]"
+    principal_processor_seconds: float = Field(
+        30,
+        gt=0,
+        description="processor time per minute that requests of one principal may use at one server while "
+        "others use it; further requests get 429 [s/min]",
     )
     principal_storage_mb: int = Field(
         20480, gt=0, description="files that one principal may have stored [MiB]"

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from fastapi import APIRouter, Request
-from starlette.concurrency import run_in_threadpool
 
 from app.calculations.curves import curves_of
 from app.calculations.schemas.curves import Curves
 from app.http.access import needs
 from app.http.strict_requests import NotCsv, StrictRoute
+from app.observation.processor_time import in_thread
 
 router = APIRouter(prefix="/api/v1", tags=["curves"], route_class=StrictRoute)
 
@@ -48,5 +48,5 @@ async def read_curve_table(request: Request) -> Curves:
     charset = extra.partition("charset=")[2].strip(' "') or "utf-8"
     if kind.strip() not in ("text/csv", XLSX) or charset not in CHARSETS:
         raise NotCsv(f"send the file itself as text/csv, or as {XLSX}")
-    read = await run_in_threadpool(curves_of, await request.body())
+    read = await in_thread(curves_of, await request.body())
     return Curves.model_validate({"curves": read.curves, "assumed": read.assumed})

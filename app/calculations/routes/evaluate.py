@@ -11,7 +11,6 @@ from typing import Annotated
 
 from fastapi import APIRouter, Header, Request, Response
 from pydantic_core import to_json
-from starlette.concurrency import run_in_threadpool
 
 from app.api.answers import answered
 from app.api.dependencies import Units, services_of
@@ -25,6 +24,7 @@ from app.calculations.worksheet import run_worksheet
 from app.catalogue.routes.templates import Id, Number
 from app.http.access import get_client, needs
 from app.http.strict_requests import PlainRoute, StrictRequest
+from app.observation.processor_time import in_thread
 from app.pool.cost import EXPENSIVE, estimated_seconds, is_quick, solving_seconds, writing_seconds
 from app.presentation.units import System
 from app.schemas.problems import Responses, refusals
@@ -136,8 +136,8 @@ async def evaluate_template(
     if estimated_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs) > EXPENSIVE:
         return await _answered(request, await _question(request, id, number, "evaluate"))
     if form == "npy":
-        return Response(await run_in_threadpool(lambda: npy(evaluated(cls, body))), media_type=NPY)
-    return _json(await run_in_threadpool(lambda: to_json(run_evaluate(cls, body))))
+        return Response(await in_thread(lambda: npy(evaluated(cls, body))), media_type=NPY)
+    return _json(await in_thread(lambda: to_json(run_evaluate(cls, body))))
 
 
 @router.post(
@@ -159,7 +159,7 @@ async def solve_template(
     seconds = solving_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs, body.target)
     if seconds > EXPENSIVE:
         return await _answered(request, await _question(request, id, number, "solve"))
-    return _json(await run_in_threadpool(lambda: to_json(run_solve(cls, body))))
+    return _json(await in_thread(lambda: to_json(run_solve(cls, body))))
 
 
 worksheets = APIRouter(prefix="/api/v1/templates", tags=["templates"], route_class=LargeRoute)
@@ -185,7 +185,7 @@ async def write_worksheet(
     seconds = estimated_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs)
     if seconds + writing_seconds(cls, body.outputs) > EXPENSIVE:
         return await _answered(request, await _question(request, id, number, "worksheet", units))
-    return _json(await run_in_threadpool(lambda: to_json(run_worksheet(cls, body, units))))
+    return _json(await in_thread(lambda: to_json(run_worksheet(cls, body, units))))
 
 
 async def _question(

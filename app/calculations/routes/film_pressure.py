@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from fastapi import APIRouter
 from pydantic import ConfigDict, Field
-from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import Units
 from app.calculations.film_pressure import TYPICAL, solve_film_pressure
 from app.calculations.schemas.film_pressure import FilmPressure
 from app.http.access import needs
 from app.http.strict_requests import StrictRoute
+from app.observation.processor_time import in_thread
 from app.schemas.bounds import Bounded
 from app.schemas.values import GIVEN, Given
 
@@ -41,5 +41,5 @@ async def show_film_pressure(body: FilmPressureIn, units: Units = "si") -> FilmP
 
     Angles increase in the sense of rotation.
     """
-    field = await run_in_threadpool(solve_film_pressure, body.inputs)
+    field = await in_thread(solve_film_pressure, body.inputs)
     return field.in_units(units)

@@ -7,13 +7,13 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
 from pydantic.config import JsonDict
-from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import TheCatalogues, services_of
 from app.calculations.spreadsheet_line import MOST_INPUTS, MOST_POINTS, csv_of
 from app.catalogue.routes.templates import Id, Number
 from app.http.access import TheClient
 from app.http.strict_requests import StrictRoute
+from app.observation.processor_time import in_thread
 from app.plain import Raw
 from app.pool.cost import EXPENSIVE, estimated_seconds
 from app.pool.sources import source_of
@@ -67,7 +67,7 @@ async def evaluate_line(
         pool = services_of(request).calculations
         content = await calculated_in_pool(pool, pool.submit(client, csv_of, *run.args))
     else:
-        content = await run_in_threadpool(run)
+        content = await in_thread(run)
     return Response(content, media_type="text/csv; charset=utf-8")
 
 

@@ -25,7 +25,9 @@ class Author(Answer):
 class Limits(Answer):
     """The limits of a principal."""
 
-    requests_per_minute: float = Field(description="requests to one server [1/min]")
+    processor_seconds: float = Field(
+        description="processor time of requests to one server, while others use that server [s/min]"
+    )
     storage_mb: float = Field(
         description="content that the principal was the first to store, even if deleted: files of builds, "
         "surfaces of analyses, imported files, tables and rows of studies, texts of worksheets [MiB]"
@@ -109,7 +111,7 @@ class LimitsIn(Bounded):
 
     model_config = ConfigDict(extra="forbid")
 
-    requests_per_minute: float | None = Field(None, gt=0, le=1e6, allow_inf_nan=False)
+    processor_seconds: float | None = Field(None, gt=0, le=1e6, allow_inf_nan=False)
     storage_mb: float | None = Field(None, ge=0, le=1e9, allow_inf_nan=False)
     calculation_seconds: float | None = Field(None, ge=0, le=1e7, allow_inf_nan=False)
     queued_jobs: int | None = Field(None, ge=1, le=10**6)

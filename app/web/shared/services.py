@@ -16,7 +16,6 @@ from typing import Annotated, ParamSpec, TypeVar
 
 from fastapi import Depends, Request
 from pydantic import JsonValue, TypeAdapter, ValidationError
-from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import expensive_steps, services_of
 from app.api.services import Services
@@ -27,6 +26,7 @@ from app.http.access import TheClient
 from app.http.problem_kinds import TABLE
 from app.http.problems import refusal
 from app.http.strict_requests import refuse_forbidden_in
+from app.observation.processor_time import in_thread
 from app.schemas.problems import Problem
 from app.storage.idempotency import Once
 
@@ -122,7 +122,7 @@ class PageServices(Services):
             If a service refuses.
         """
         with refusals():
-            return await run_in_threadpool(function, *arguments, **options)
+            return await in_thread(function, *arguments, **options)
 
     async def ask(self, answer: Awaitable[Result]) -> Result:
         """Return the answer of a service that runs in the event loop.

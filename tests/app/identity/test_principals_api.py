@@ -1,18 +1,21 @@
 """Over REST, administrators see all principals, keys and usage; other users see their own."""
 
+import time
+
 import pytest
 from bare_shells import BUSH
 
 from app.client import Client, Problem
 from app.identity.limits import LimitReached, Limits
 from app.identity.usage import PrincipalUsage, check, note, used
+from templates.door import built_in
 
 
 def test_everybody_learns_who_they_are(team):
     with team.client("author") as client:
         me = client.me()
     assert (me.name, me.roles) == ("author", ["author"])
-    assert me.usage.limits.requests_per_minute == 600
+    assert me.usage.limits.processor_seconds == 30
 
 
 def test_without_keys_everybody_is_local_and_unlimited(client):
@@ -99,13 +102,28 @@ def test_requests_beyond_the_rate_get_429(team):
     row = team.identity.add("hasty", ["viewer"])
     key = team.identity.add_key(row.id)[0].text
     with team.client("admin") as admin:
-        admin.change_principal(row.id, limits={"requests_per_minute": 2})
-    with team.http() as http:
-        headers = {"Authorization": f"Bearer {key}"}
-        answers = [http.get("/api/v1/me", headers=headers) for _ in range(3)]
-    assert [one.status_code for one in answers] == [200, 200, 429]
-    assert int(answers[2].headers["retry-after"]) >= 1
-    assert answers[2].json()["type"] == "/problems/limit-reached"
+        admin.change_principal(row.id, limits={"processor_seconds": 0.001})
+        with team.http() as http:
+            headers = {"Authorization": f"Bearer {key}"}
+            first = http.get("/api/v1/me", headers=headers)
+            admin.me()
+            second = http.get("/api/v1/me", headers=headers)
+    assert (first.status_code, second.status_code) == (200, 429)
+    assert 1 <= int(second.headers["retry-after"]) <= 10
+    assert second.json()["type"] == "/problems/limit-reached"
+    assert "0.001 s of processor time a minute while others" in second.json()["detail"]
+
+
+@pytest.mark.slow
+def test_a_loop_of_evaluations_is_not_limited_while_nobody_else_waits(team):
+    row = team.identity.add("loop", ["viewer"])
+    key = team.identity.add_key(row.id)[0].text
+    with team.client("admin") as admin:
+        admin.change_principal(row.id, limits={"processor_seconds": 0.001})
+    time.sleep(2.1)  # the administrator has left
+    with Client(team.server.url, key=key, patience=0) as client:
+        for _ in range(1000):
+            client.evaluate("journal_friction", 1, built_in().get("journal_friction", 1).example)
 
 
 def test_usage_adds_up(database):
