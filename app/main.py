@@ -39,6 +39,7 @@ from app.designs.routes.variant_sheets import by_type as sheets_by_type
 from app.designs.routes.variant_sheets import router as variant_sheets
 from app.designs.routes.variants import router as variants
 from app.http import access, gate, openapi, problems, request_log
+from app.http.connections import AddressLimit
 from app.http.limits import BodyLimits
 from app.http.openapi import describe_interface, operation_id
 from app.http.pace import Pace
@@ -156,7 +157,8 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     pages.install(app)
     access.install(app)
     body = BodyLimits(chosen.body_limit, chosen.body_seconds, chosen.slowest_rate)
-    gate.install(app, Hosts(chosen.allowed_hosts, chosen.host), body, problems.refusal)
+    addresses = AddressLimit(chosen.connections_per_address, chosen.trusted_proxies)
+    gate.install(app, Hosts(chosen.allowed_hosts, chosen.host), body, addresses, problems.refusal)
     if traces is not None:
         from app.http import request_spans
 

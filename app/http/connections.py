@@ -15,7 +15,12 @@ import json
 import socket
 import struct
 from asyncio import Transport
+from collections import Counter
+from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass
+from functools import lru_cache
+from ipaddress import IPv4Network, IPv6Address, IPv6Network, ip_address, ip_network
 
 from starlette.types import ASGIApp, Scope
 from uvicorn.protocols.http.httptools_impl import STATUS_LINE, HttpToolsProtocol
@@ -34,6 +39,53 @@ _DEAD = 60.0  # extra time for a silent machine, compared with a slow reader [s]
 _USER_TIMEOUT = getattr(socket, "TCP_USER_TIMEOUT", 0)  # Linux
 
 
+Network = IPv4Network | IPv6Network
+
+
+class AddressLimit:
+    """Counts what each address has open; at most `most`, unless it is a proxy's.
+
+    The connections of a trusted proxy belong to many clients, whose requests are counted by the address that
+    the proxy forwards.
+
+    Parameters
+    ----------
+    most
+        Largest number for one address.
+    proxies
+        Addresses and networks of the trusted proxies.
+    """
+
+    def __init__(self, most: int, proxies: Iterable[str]) -> None:
+        self.most, self._proxies = most, tuple(ip_network(proxy) for proxy in proxies)
+        self.open: Counter[str] = Counter()
+
+    def enter(self, client: tuple[str, int] | None) -> int:
+        """Count one more of a client's address; return by how many the address exceeds the limit."""
+        if client is None or _is_within(client[0], self._proxies):
+            return 0
+        self.open[client[0]] += 1
+        return max(0, self.open[client[0]] - self.most)
+
+    def leave(self, client: tuple[str, int] | None) -> None:
+        """Count one less of a client's address."""
+        if client is not None and client[0] in self.open:
+            self.open[client[0]] -= 1
+            if not self.open[client[0]]:
+                del self.open[client[0]]
+
+
+@lru_cache(maxsize=4096)
+def _is_within(host: str, networks: tuple[Network, ...]) -> bool:
+    """Return whether a host is an address of some network; an IPv4 address may be written as IPv6."""
+    with suppress(ValueError):
+        address = ip_address(host)
+        if isinstance(address, IPv6Address) and address.ipv4_mapped is not None:
+            address = address.ipv4_mapped
+        return any(address in network for network in networks)
+    return False
+
+
 @dataclass(frozen=True)
 class ConnectionLimits:
     """Limits that one server sets on the connections of its clients.
@@ -42,6 +94,8 @@ class ConnectionLimits:
     ----------
     count
         Largest number of simultaneous connections.
+    addresses
+        Limit on those of one address.
     header_seconds
         Longest time from the first byte of a request to the end of its head [s].
     write_seconds
@@ -51,6 +105,7 @@ class ConnectionLimits:
     """
 
     count: int
+    addresses: AddressLimit
     header_seconds: float
     write_seconds: float
     rate: float
@@ -74,7 +129,8 @@ class TimedProtocol(HttpToolsProtocol):
         """Start to wait for the first request."""
         super().connection_made(transport)
         self._drop_dead_peer()
-        surplus = len(self.connections) - self.limits.count
+        of_address = self.limits.addresses.enter(self.client)
+        surplus = max(len(self.connections) - self.limits.count, of_address)
         if surplus > _RESERVE:
             self._cut("too many")
             return
@@ -92,7 +148,8 @@ class TimedProtocol(HttpToolsProtocol):
             sock.setsockopt(socket.IPPROTO_TCP, _USER_TIMEOUT, milliseconds)
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Cancel the timers."""
+        """Cancel the timers, and make room for another connection."""
+        self.limits.addresses.leave(self.client)
         for timer in (self._head_timer, self._write_timer):
             if timer is not None:
                 timer.cancel()

@@ -18,7 +18,8 @@ from starlette.middleware.exceptions import ExceptionMiddleware
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.http import access, guard
-from app.http.limits import BodyLimits, ServiceStopping
+from app.http.connections import AddressLimit
+from app.http.limits import AddressCrowded, BodyLimits, ServiceStopping
 from app.http.strict_requests import HttpError
 from app.identity.errors import IdentityError
 from app.identity.principal import ACTING
@@ -41,6 +42,8 @@ class Gate:
         The hosts whose requests it accepts.
     body
         Limits on the body.
+    addresses
+        Limit on the requests in progress of one address.
     refuse
         Function that returns the response to a refused request.
     unexpected
@@ -52,10 +55,11 @@ class Gate:
         app: ASGIApp,
         hosts: Hosts,
         body: BodyLimits,
+        addresses: AddressLimit,
         refuse: Callable[[Refusal], Response],
         unexpected: Unexpected | None = None,
     ) -> None:
-        self.app, self.hosts, self.body = app, hosts, body
+        self.app, self.hosts, self.body, self.addresses = app, hosts, body, addresses
         self.refuse, self.unexpected = refuse, unexpected
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -63,9 +67,13 @@ class Gate:
         if scope["type"] != "http":
             await self._passed(scope, receive, send)
             return
-        answer = _Answer(send)
+        answer, client = _Answer(send), scope.get("client")
         try:
-            await self._admitted(scope, receive, answer)
+            if self.addresses.enter(client):
+                about = f"at most {self.addresses.most} requests of one address may be in progress"
+                await self.refuse(AddressCrowded(about))(scope, receive, answer)
+            else:
+                await self._admitted(scope, receive, answer)
         except asyncio.CancelledError:
             if answer.has_begun:
                 raise
@@ -75,6 +83,8 @@ class Gate:
             if self.unexpected is not None and not answer.has_begun:
                 await (await self.unexpected(Request(scope), error))(scope, receive, answer)
             raise  # the server logs it
+        finally:
+            self.addresses.leave(client)
 
     async def _admitted(self, scope: Scope, receive: Receive, answer: _Answer) -> None:
         try:
@@ -129,7 +139,13 @@ class _Answer:
         await self._send(message)
 
 
-def install(app: FastAPI, hosts: Hosts, body: BodyLimits, refuse: Callable[[Refusal], Response]) -> None:
+def install(
+    app: FastAPI,
+    hosts: Hosts,
+    body: BodyLimits,
+    addresses: AddressLimit,
+    refuse: Callable[[Refusal], Response],
+) -> None:
     """Put the gate around the whole app, including its middleware and its responses to errors.
 
     It replaces Starlette's layer for unexpected errors, which would be inside the gate.
@@ -141,6 +157,6 @@ def install(app: FastAPI, hosts: Hosts, body: BodyLimits, refuse: Callable[[Refu
         inner: ASGIApp = ExceptionMiddleware(AsyncExitStackMiddleware(app.router), handlers)
         for layer in reversed(app.user_middleware):
             inner = layer.cls(inner, *layer.args, **layer.kwargs)
-        return Gate(inner, hosts, body, refuse, unexpected)
+        return Gate(inner, hosts, body, addresses, refuse, unexpected)
 
     app.build_middleware_stack = built  # type: ignore[method-assign]

@@ -25,6 +25,12 @@ class HeadTooLarge(HttpError):
     """The address and the headers are longer than the service accepts."""
 
 
+class AddressCrowded(HttpError):
+    """One address has too many requests in progress."""
+
+    headers = {"Retry-After": "5"}
+
+
 class BodyTooLarge(HttpError):
     """The body is larger than the service accepts."""
 

@@ -14,7 +14,7 @@ from app.approvals import errors as approvals
 from app.calculations.errors import InvalidBody, NoArray, TooManyValues
 from app.designs import errors as designs
 from app.http.guard import BadHost, CrossSite, HostNotAllowed
-from app.http.limits import BodyTooLarge, BodyTooSlow, HeadTooLarge, ServiceStopping
+from app.http.limits import AddressCrowded, BodyTooLarge, BodyTooSlow, HeadTooLarge, ServiceStopping
 from app.http.streams import TooManyStreams
 from app.http.strict_requests import (
     NotCsv,
@@ -57,6 +57,7 @@ INVALID = Kind(
     "invalid-inputs", 422, "Some inputs are wrong", "correct each entry of `errors`; nothing was saved"
 )
 INTERNAL = Kind("internal", 500, "The service failed", "this is a fault of the program; please report it")
+CROWDED = Kind("too-many-connections", 503, "Too many connections", "close some, then retry")
 CANCELLED = Kind("cancelled", 409, "The work was cancelled", "send the change again")
 
 NOT_READY = Kind("not-ready", 503, "The service is not ready", "see `errors`; ask the operator")
@@ -173,6 +174,7 @@ TABLE: dict[type[Exception], Kind] = {
     BodyTooSlow: Kind(
         "too-slow", 408, "The request arrives too slowly", "send it faster, or split it into smaller requests"
     ),
+    AddressCrowded: CROWDED,
     TooManyStreams: Kind("too-many-streams", 429, "Too many streams are open", "close some, then retry"),
     identity.NotSignedIn: Kind(
         "not-signed-in", 401, "A key is needed", "send `Authorization: Bearer cw_…`, or sign in at /sign-in"
@@ -252,7 +254,6 @@ HTTP = {
     405: Kind("method-not-allowed", 405, "Method not allowed here", "see the header Allow"),
 }
 
-CROWDED = Kind("too-many-connections", 503, "Too many connections", "close some, then retry")
 BEFORE_HTTP = (
     CROWDED,
     Kind("not-http", 400, "Not HTTP", "send HTTP/1.1"),

@@ -30,7 +30,7 @@ from fastapi import FastAPI
 from starlette.types import Receive, Scope, Send
 
 from app.http import problems
-from app.http.connections import ConnectionLimits, protocol
+from app.http.connections import AddressLimit, ConnectionLimits, protocol
 from app.http.problem_kinds import CROWDED
 from app.http.request_log import RequestLog, what_is_in_flight
 from app.observation import logs
@@ -48,6 +48,7 @@ def configuration(app: FastAPI, settings: Settings, port: int | None = None) -> 
     """Return uvicorn's configuration with the service's limits; the port overrides that of the settings."""
     limits = ConnectionLimits(
         settings.connections,
+        AddressLimit(settings.connections_per_address, settings.trusted_proxies),
         settings.header_seconds,
         settings.write_seconds,
         settings.slowest_rate,
@@ -68,7 +69,7 @@ def configuration(app: FastAPI, settings: Settings, port: int | None = None) -> 
 
 async def _busy(scope: Scope, receive: Receive, send: Send) -> None:
     """Return the response to a request on a connection beyond the limit."""
-    about = problems.problem(CROWDED, "too many connections are open; close some, or try again")
+    about = problems.problem(CROWDED, "too many connections are open, in all or of your address; close some")
     await problems.answer(about, {"Retry-After": "5", "Connection": "close"})(scope, receive, send)
 
 

@@ -150,6 +150,14 @@ class Settings(BaseSettings):
     )
     drain_seconds: float = Field(10.0, gt=0, description="longest time from SIGTERM to the end [s]")
     connections: int = Field(1000, gt=0, description="connections at the same time; others get 503")
+    connections_per_address: int = Field(
+        200,
+        gt=0,
+        description=(
+            "connections of one address at the same time, or requests that a trusted proxy forwards for it; "
+            "others get 503"
+        ),
+    )
     header_seconds: float = Field(
         10.0, gt=0, description="longest time for receiving the header of a request [s]"
     )

@@ -10,6 +10,7 @@ from typing import IO
 
 import numpy as np
 
+from app.presentation import numbers
 from app.presentation.spreadsheets import Value, harmless
 from app.presentation.units import System, shown_unit, shown_value
 from app.studies.archive import AnyArray, write_each
@@ -26,19 +27,28 @@ SOME, SOME_SORTED = (
 
 
 def heads(listing: RowList, system: System) -> list[list[str]]:
-    """Return the two heading rows: names, then units."""
-    criteria = listing.plan.criteria
-    names = ["row", *listing.names, *criteria, "verdict", "error unknown", "level", "reason"]
-    units = [shown_unit(unit, system) for unit in listing.units.values()]
-    return [names, ["", *units, *("" for _ in criteria), "", "", "", ""]]
+    """Return the two heading rows: words with units as on the page, then names for programs."""
+    criteria, tail = listing.plan.criteria, ["verdict", "error unknown", "level", "reason"]
+    words = [_heading(listing, name, shown_unit(unit, system)) for name, unit in listing.units.items()]
+    return [
+        ["Row", *words, *criteria, *(text.capitalize() for text in tail)],
+        ["row", *listing.names, *criteria, *tail],
+    ]
+
+
+def _heading(listing: RowList, name: str, shown: str) -> str:
+    unit = numbers.unit(shown)
+    words = listing.plan.words.get(name, name)
+    head = words[:1].upper() + words[1:]
+    return f"{head} [{unit}]" if unit else head
 
 
 def lines(listing: RowList, system: System) -> Iterator[list[Value]]:
     """Yield one line of cells for each row, in the order of `heads`."""
-    numbers = listing.numbers()
+    selected = listing.numbers()
     size = SOME if listing.wanted.sort is None else SOME_SORTED
-    for start in range(0, len(numbers), size):
-        for row in listing.rows(numbers[start : start + size]):
+    for start in range(0, len(selected), size):
+        for row in listing.rows(selected[start : start + size]):
             yield _line(listing, row, system)
 
 
@@ -99,13 +109,13 @@ def write_npz(listing: RowList, file: IO[bytes]) -> None:
 
 
 def _arrays(listing: RowList) -> Iterator[tuple[str, AnyArray]]:
-    numbers = listing.numbers()
-    yield "row", numbers
+    selected = listing.numbers()
+    yield "row", selected
     for name in listing.names:
-        yield name, listing.column(name)[numbers]
+        yield name, listing.column(name)[selected]
     words = np.array(VERDICTS)
     for criterion in listing.plan.criteria:
-        codes = listing.stored.codes(criterion)[numbers]
+        codes = listing.stored.codes(criterion)[selected]
         yield f"verdict {criterion}", words[codes]
         yield f"error unknown {criterion}", codes == MET_ERROR_UNKNOWN
-    yield "refused", listing.stored.is_refused[numbers]
+    yield "refused", listing.stored.is_refused[selected]

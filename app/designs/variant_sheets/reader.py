@@ -176,15 +176,15 @@ def _unit(below: str, named: str, declared: str | None, at: int, faults: list[Fa
 def _name(grid: Grid, row: int, variants: Collection[str], faults: list[Fault]) -> tuple[str, bool]:
     """Return the name of the variant in a row, and whether it is valid; an invalid name adds a fault."""
     before = len(faults)
-    name, where = joined(grid.cell(row, 0)), address(row, 0)
+    typed, where = grid.cell(row, 0), address(row, 0)
+    name = joined(typed)
     if not name:
         faults.append(
             Fault(where, "missing_name", "this row has no name; name its variant, such as `main_1`")
         )
     elif not NAME.fullmatch(name):
-        message = (
-            f"{excerpt(name)} is not a name; begin with a letter, then use letters, digits and _: main_1"
-        )
+        wanted = "begin with a letter, then use letters, digits and _: main_1"
+        message = f"{excerpt(typed)} is not a name; {wanted}"
         faults.append(Fault(where, "ill_named", message))
     elif name in RESERVED:
         faults.append(Fault(where, "reserved", RESERVED[name]))

@@ -184,7 +184,7 @@ def download_csv(
     sort: Sort = None,
     units: Units = "si",
 ) -> Response:
-    """Return all or the selected rows as CSV: a row of names, a row of units, then the numbers."""
+    """Return all or the selected rows as CSV: headings with units, names for programs, then the numbers."""
     listing = _listing(studies, id, columns, where, sort)
     with studies.reading(id):
         listing.stored.verify()  # after the response has begun, an error could only truncate it

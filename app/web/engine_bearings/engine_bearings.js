@@ -10,6 +10,7 @@ form.addEventListener("change", (event) => later(event.target));
 file.addEventListener("change", () => {
   if (file.files.length) form.elements.gas.value = "diagram"; // whoever chooses a diagram wants it to be used
 });
+table.addEventListener("input", () => (file.value = "")); // an edited table replaces the file from which it came
 
 function later(changed) {
   clearTimeout(timer);
@@ -21,7 +22,6 @@ async function check(changed) {
   asked = new AbortController();
   const body = new FormData(form);
   body.set("wanted", "check");
-  if (changed !== file) body.delete("diagram"); // it was read when it was chosen
   try {
     const answer = await fetch(form.getAttribute("action"), { method: "POST", body, signal: asked.signal });
     if (answer.ok) show(new DOMParser().parseFromString(await answer.text(), "text/html"), changed);
@@ -33,7 +33,6 @@ async function check(changed) {
 function show(page, changed) {
   if (changed === file && page.querySelector("[data-live='diagram.assumed']").textContent) {
     table.value = page.querySelector("[name=diagram_table]").value;
-    file.value = "";
   }
   const offers = form.querySelector("[data-live=proposals]"), fresh = page.querySelector("[data-live=proposals]");
   if (names(offers) !== names(fresh)) takeOffers(offers, fresh);

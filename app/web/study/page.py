@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from urllib.parse import urlencode
 
@@ -12,6 +12,7 @@ from pydantic import BaseModel
 from app.designs.schemas.result_table import ResultColumn, ResultRow, ResultTable
 from app.http.pages import Cursor
 from app.presentation import numbers
+from app.presentation.criteria import line
 from app.presentation.result_lines import result_lines
 from app.presentation.units import System
 from app.reference import Reference
@@ -47,6 +48,7 @@ async def study_page(
         list_rows, id, services.studies, None, wanted.where, wanted.sort, SHOWN, wanted.cursor, units
     )
     criteria = await _criteria(services, study, units)
+    subjects = {one.name: line(one).subject for one in criteria}
     best = _best(study)
     return show(
         request,
@@ -54,8 +56,8 @@ async def study_page(
         study=study,
         design=design,
         rows=rows,
-        listed=result_lines(_of_rows(study, rows.items)),
-        found=result_lines(_of_best(study, best)),
+        listed=result_lines(_of_rows(study, rows.items, subjects)),
+        found=result_lines(_of_best(study, best, subjects)),
         marks={str(row.row): "best" if len(best) == 1 else "front" for row in best},
         links={name: _link(name, sort, where) for name in (*study.varied, *study.outputs)},
         names=[*study.varied, *study.outputs],
@@ -77,18 +79,20 @@ def _best(study: Study) -> list[Best]:
     return [study.result.best] if study.result.best else study.result.front or []
 
 
-def _of_rows(study: Study, rows: Sequence[StudyRow]) -> ResultTable:
+def _of_rows(study: Study, rows: Sequence[StudyRow], subjects: Mapping[str, str]) -> ResultTable:
     """Return the table of some rows: the varied values, then the outputs."""
     names = [*study.varied, *study.outputs]
-    shown = [_row(row, [row.values.get(name) for name in names]) for row in rows]
+    shown = [_row(row, [row.values.get(name) for name in names], subjects) for row in rows]
     return ResultTable(columns=_columns(study, names), rows=shown)
 
 
-def _of_best(study: Study, rows: Sequence[Best]) -> ResultTable:
+def _of_best(study: Study, rows: Sequence[Best], subjects: Mapping[str, str]) -> ResultTable:
     """Return the table of the best row, or of the front: the varied values, then the outputs."""
     names = [*study.varied, *study.outputs]
     values = [{name: one.value for name, one in {**row.at, **row.outputs}.items()} for row in rows]
-    shown = [_row(row, [own.get(name) for name in names]) for row, own in zip(rows, values, strict=True)]
+    shown = [
+        _row(row, [own.get(name) for name in names], subjects) for row, own in zip(rows, values, strict=True)
+    ]
     return ResultTable(columns=_columns(study, names), rows=shown)
 
 
@@ -98,9 +102,9 @@ def _columns(study: Study, names: Sequence[str]) -> list[ResultColumn]:
     ]
 
 
-def _row(row: StudyRow | Best, values: Sequence[float | None]) -> ResultRow:
+def _row(row: StudyRow | Best, values: Sequence[float | None], subjects: Mapping[str, str]) -> ResultRow:
     """Return a row; the criteria that decide its verdict govern it, unless all are met."""
-    decisive = [name for name, one in row.verdicts.items() if one == row.verdict != "met"]
+    decisive = [subjects.get(name, name) for name, one in row.verdicts.items() if one == row.verdict != "met"]
     reason = row.reason if isinstance(row, StudyRow) else None
     return ResultRow(
         name=str(row.row),

@@ -7,7 +7,7 @@ const SVG = "http://www.w3.org/2000/svg", WIDTH = 900, HEIGHT = 320, TOP = 46, B
 
 // `names` are the columns; `pick` receives the row of a clicked line, `kept` the number of selected rows.
 export function drawParallel(place, table, names, { pick, kept }) {
-  const axes = names.map((name, n) => axisOf(table.columns[name], name, SIDE + (n * (WIDTH - 2 * SIDE)) / Math.max(1, names.length - 1)));
+  const axes = names.map((name, n) => axisOf(table.columns[name], table.columns[name].words, SIDE + (n * (WIDTH - 2 * SIDE)) / Math.max(1, names.length - 1)));
   const drawing = element("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "parallel", role: "img", "aria-label": `${table.rows.length} rows over ${names.join(", ")}` });
   const every = Math.max(1, Math.ceil(table.rows.length / MOST_LINES)), lines = [];
   for (let row = 0; row < table.rows.length; row += every) {

@@ -52,8 +52,8 @@ async function startCharts(section) {
 
 // Return all rows with values, up to the number that a chart can show.
 async function tableOf(section) {
-  const names = [...JSON.parse(section.dataset.varied), ...JSON.parse(section.dataset.outputs)], symbols = JSON.parse(section.dataset.unitsOf);
-  const columns = Object.fromEntries(names.map((name) => [name, { unit: symbols[name], values: [] }])), rows = [], verdicts = [], each = [];
+  const names = [...JSON.parse(section.dataset.varied), ...JSON.parse(section.dataset.outputs)], symbols = JSON.parse(section.dataset.unitsOf), headings = JSON.parse(section.dataset.headings);
+  const columns = Object.fromEntries(names.map((name) => [name, { words: headings[name] ?? name, unit: symbols[name], values: [] }])), rows = [], verdicts = [], each = [];
   let cursor = "";
   do {
     const { payload: page } = await call("GET", `/api/v1/studies/${section.dataset.study}/rows?limit=${PAGE}&units=${units()}${cursor && `&cursor=${encodeURIComponent(cursor)}`}`);
@@ -111,7 +111,7 @@ function fresh(section) {
 function show(section, table, row) {
   const n = table.rows.indexOf(row), panel = section.querySelector("[data-picked]");
   if (n < 0) return;
-  const values = Object.entries(table.columns).map(([name, { values, unit: symbol }]) => `${name} ${values[n] === null ? "–" : plain(values[n])} ${unit(symbol)}`.trim());
+  const values = Object.entries(table.columns).map(([, { words, values, unit: symbol }]) => `${words} ${values[n] === null ? "–" : plain(values[n])} ${unit(symbol)}`.trim());
   panel.hidden = false;
   panel.querySelector("[data-picked-text]").textContent = `Row ${row}: ${values.join(", ")}${table.verdicts[n] ? `; ${table.verdicts[n].replaceAll("_", " ")}` : ""}`;
   panel.querySelector('[name="row"]').value = row;

@@ -1,20 +1,20 @@
 // Charts of a study's rows: scatter, contour with the feasible region, histogram with limits, tornado.
 //
-// `table` holds columns by name, `{ unit, values }`, one value a row, and `verdicts`, one worst verdict a row.
+// `table` holds columns by name, `{ words, unit, values }`, one value a row, and `verdicts`, one worst verdict a row.
 import { unit } from "../shared/numbers.js";
 import { COLOURS, draw } from "../plots/plots.js";
 
 const TONES = { met: "#1d6b3a", undecided: "#c98b12", not_checked: "#5a5f66", not_met: "#a3221b" };
 const WORDS = { met: "met", undecided: "undecided", not_checked: "not checked", not_met: "not met" };
 
-export const axisTitle = (table, name) => `${name}${unit(table.columns[name].unit) ? ` [${unit(table.columns[name].unit)}]` : ""}`;
+export const axisTitle = (table, name) => `${table.columns[name].words}${unit(table.columns[name].unit) ? ` [${unit(table.columns[name].unit)}]` : ""}`;
 
 // Draw one mark for each row, coloured by its worst verdict; `pick` receives the clicked row.
 export async function drawScatter(place, table, x, y, pick) {
   const traces = groups(table).map(([verdict, rows]) => ({
     type: "scatter", mode: "markers", name: WORDS[verdict] ?? "no criteria", customdata: rows.map((row) => table.rows[row]),
     x: rows.map((row) => table.columns[x].values[row]), y: rows.map((row) => table.columns[y].values[row]),
-    marker: { size: 6, color: TONES[verdict] ?? COLOURS[0] }, hovertemplate: `${x} %{x:.5g}<br>${y} %{y:.5g}<extra>row %{customdata}</extra>`,
+    marker: { size: 6, color: TONES[verdict] ?? COLOURS[0] }, hovertemplate: `${table.columns[x].words} %{x:.5g}<br>${table.columns[y].words} %{y:.5g}<extra>row %{customdata}</extra>`,
   }));
   await draw(place, traces, { height: 380, showlegend: traces.length > 1, ...axes(table, x, y) });
   picked(place, pick);
@@ -30,7 +30,7 @@ export async function drawContour(place, table, x, y, z, pick) {
     cells[at[0]][at[1]] = value;
     worst[at[0]][at[1]] = ["met", null, undefined].includes(table.verdicts[row]) ? 1 : 0;
   });
-  const traces = [{ type: "contour", x: across, y: upright, z: cells, colorscale: "Viridis", showscale: false, contours: { coloring: "fill", showlabels: true }, hovertemplate: `${x} %{x:.5g}<br>${y} %{y:.5g}<br>${z} %{z:.5g}<extra></extra>` }];
+  const traces = [{ type: "contour", x: across, y: upright, z: cells, colorscale: "Viridis", showscale: false, contours: { coloring: "fill", showlabels: true }, hovertemplate: `${table.columns[x].words} %{x:.5g}<br>${table.columns[y].words} %{y:.5g}<br>${table.columns[z].words} %{z:.5g}<extra></extra>` }];
   if (table.verdicts.some((verdict) => verdict && verdict !== "met")) {
     traces.push({ type: "contour", x: across, y: upright, z: worst, showscale: false, contours: { type: "constraint", operation: ">", value: 0.5 }, fillcolor: "rgba(163, 34, 27, 0.35)", line: { color: TONES.not_met, width: 2 }, hoverinfo: "skip", showlegend: false, name: "not met" });
   }

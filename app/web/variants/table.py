@@ -132,7 +132,7 @@ def variants_table(
     """
     grid = refused.grid if refused else _grid(out)
     faults = refused.faults if refused else {}
-    shown = [at for at in range(1, grid.width + 1) if not grid.cell(0, at).lower().startswith(RESULTS)]
+    shown = [at for at in range(1, _used(grid) + 2) if not grid.cell(0, at).lower().startswith(RESULTS)]
     names, unchecked = _criteria(out)
     outcomes = {} if refused else {row.name: _outcome(design, out, row, names) for row in out.rows}
     last = max(len(grid.rows), FIRST_VARIANT)
@@ -179,6 +179,11 @@ def _typed_unit(text: str) -> str:
 def _grid(out: VariantsOut) -> Grid:
     rows = rows_of(page_columns(out))
     return grid_of([[str(cell or "") for cell in row] for row in rows]) if out.variants else EMPTY
+
+
+def _used(grid: Grid) -> int:
+    """Return the last column with a text; an empty one for a new input follows it."""
+    return max((at for row in grid.rows for at, text in enumerate(row) if text), default=0)
 
 
 def _head(grid: Grid, at: int, out: VariantsOut, faults: Mapping[str, str]) -> Head:

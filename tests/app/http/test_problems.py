@@ -33,6 +33,7 @@ def test_only_a_fault_of_the_program_is_a_500():
     assert {kind.slug for kind in KINDS.values() if kind.status >= 500} == {
         "internal",
         "stopping",
+        "too-many-connections",
         *storage,
         *team,
     }

@@ -10,6 +10,7 @@ from pydantic import ValidationError
 
 from app.http import gate, guard, problems
 from app.http.access import COOKIE, HEADER, TheClient
+from app.http.connections import AddressLimit
 from app.http.limits import BodyLimits
 from app.main import create_app
 from app.settings import Settings
@@ -17,6 +18,7 @@ from app.settings.hosts import Authority, Hosts, is_loopback, parse
 from app.web.shared.session import keep_session
 
 BODY = BodyLimits(2**20, 10.0, 1000.0)
+ADDRESSES = AddressLimit(100, ())
 
 
 def send(app, method="GET", path="/healthz", base="http://localhost", **more):
@@ -198,7 +200,7 @@ class TestSockets:
             sent.append(message)
 
         scope = {"type": "websocket", "scheme": "ws", "path": "/", "headers": [*headers], "server": None}
-        asyncio.run(gate.Gate(app, Hosts(), BODY, problems.refusal)(scope, None, take))
+        asyncio.run(gate.Gate(app, Hosts(), BODY, ADDRESSES, problems.refusal)(scope, None, take))
         return not reached and sent[0]["type"] == "websocket.close"
 
     def test_other_sites_open_no_web_socket(self):
@@ -224,7 +226,7 @@ class TestHeaders:
 
     def test_what_a_route_says_stays(self):
         app = FastAPI()
-        gate.install(app, Hosts(), BODY, problems.refusal)
+        gate.install(app, Hosts(), BODY, ADDRESSES, problems.refusal)
 
         @app.get("/own")
         async def own() -> problems.Response:
@@ -264,7 +266,7 @@ class TestCaller:
     def app(self):
         """A route that says for whom it is called, behind the guard."""
         app = FastAPI()
-        gate.install(app, Hosts(), BODY, problems.refusal)
+        gate.install(app, Hosts(), BODY, ADDRESSES, problems.refusal)
 
         @app.get("/api/v1/who")
         async def who(client: TheClient) -> dict[str, str]:

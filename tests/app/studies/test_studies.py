@@ -307,8 +307,8 @@ def test_files_hold_the_rows(http, sampled):
     expected = [row["values"][LOSS] for row in items]
     table = list(csv.reader(io.StringIO(content(http, sampled, "csv").decode())))
     of_verdicts = ["thick_enough", "verdict", "error unknown"]
-    assert table[0] == ["row", "clearance", THICKNESS, LOSS, *of_verdicts, "level", "reason"]
-    assert table[1][:4] == ["", "mm", "um", "W"]
+    assert table[0][:4] == ["Row", "Clearance [mm]", "Minimum film thickness [µm]", "Power loss [W]"]
+    assert table[1] == ["row", "clearance", THICKNESS, LOSS, *of_verdicts, "level", "reason"]
     assert [float(line[3]) for line in table[2:]] == expected
     sheet = load_workbook(io.BytesIO(content(http, sampled, "xlsx"))).active
     assert [cell.value for cell in sheet["D"][2:]] == pytest.approx(expected)

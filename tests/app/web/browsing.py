@@ -142,11 +142,11 @@ def from_example(http, template: str) -> str:
     return f"/designs/{response.json()['id']}"
 
 
-def settled(http, place: str) -> dict:
+def settled(http, place: str, seconds: float = 60.0) -> dict:
     """The design of a page once its regeneration has ended."""
 
     def asked():
         http.get(f"{API}{place}/model.step", headers={"Prefer": "wait=10"})
         return http.get(f"{API}{place}").json()
 
-    return until(asked, lambda design: design["state"] != "regenerating")
+    return until(asked, lambda design: design["state"] != "regenerating", seconds)

@@ -112,6 +112,9 @@ def describe_engine(hand, layout):
 
 def test_a_main_bearing_from_a_measured_cycle(hand):
     describe_engine(hand, "in_line_1")
+    note = hand.page.locator(".page-head")
+    expect(note).to_contain_text("decimal comma")
+    expect(note).to_contain_text("combustion moved from 0° to 360°")
     row = hand.page.locator("[data-result=main_1]")
     expect(row.locator(".mark")).to_have_text(re.compile("^(met|not met)"), timeout=LONG)
     film = hand.numbers("main_1")["film.minimum_film_thickness"]
@@ -155,7 +158,7 @@ def test_the_width_with_the_least_power_and_a_film_of_three_micrometres(hand):
     hand.click("button", "Start the study")
     expect(page.locator("[data-study-state]")).to_have_text("done", timeout=LONG)
     answer = page.locator("[data-answer]")
-    expect(answer).to_contain_text("Smallest oil_film.power_loss")
+    expect(answer).to_contain_text("Smallest power loss")
     hand.click("button", re.compile("^Use row"), within=page.locator(".best"))
     hand.wait_for_design()
     film = page.locator('[data-output="oil_film.minimum_film_thickness"] .number')

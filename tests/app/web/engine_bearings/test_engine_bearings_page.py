@@ -103,6 +103,26 @@ def test_the_form_checks_entries_while_they_are_typed(watched):
     assert watched.faults() == []
 
 
+@NEEDS_CHROMIUM
+def test_a_chosen_diagram_stays_chosen_until_its_table_is_edited(watched):
+    page, read = watched.page, watched.page.get_by_role("status").filter(has_text="Read:")
+    watched.open(PAGE)
+    content = gas_table().replace(b",", b";").replace(b".", b",")
+    page.locator("[name=diagram]").set_input_files(
+        {"name": "gas.csv", "mimeType": "text/csv", "buffer": content}
+    )
+    expect(read).to_contain_text("decimal comma")
+    page.get_by_label("Layout").select_option("in_line_4")
+    expect(page.get_by_text("Crankshaft (9)")).to_be_visible()  # the answer to this entry is shown
+    expect(read).to_contain_text("decimal comma")
+    assert page.locator("[name=diagram]").input_value().endswith("gas.csv")
+    table = page.locator("[name=diagram_table]")
+    page.get_by_text("Paste the diagram as a table").click()
+    table.fill(table.input_value().replace("bar(a)", "bar"))
+    expect(read).to_contain_text("absolute pressures, because")
+    assert page.locator("[name=diagram]").input_value() == ""
+
+
 def test_bare_numbers_follow_the_switch_of_units(http):
     typed = {"layout": "in_line_4", "bore": "3.4", "piston_mass": "1"}
     http.cookies.set("units", "us")

@@ -7,6 +7,8 @@ from playwright.sync_api import expect
 from app.catalogue.schemas.templates import TemplateSummary
 from app.web.home.routes import each_once
 
+SQUARE = '<svg xmlns="http://www.w3.org/2000/svg" width="4" height="4"/>'
+
 
 def version(id: str, number: int, *, latest: bool) -> TemplateSummary:
     return TemplateSummary(id=id, version=number, title=id, summary="", status="released", latest=latest)
@@ -38,3 +40,21 @@ def test_the_front_page_begins_with_what_one_can_do(watched, width):
     expect(page.locator(".new-design input[name=name]")).to_be_visible()
     assert Axe().run(page, options={"resultTypes": ["violations"]}).response["violations"] == []
     assert watched.faults() == []
+
+
+@pytest.mark.slow
+def test_a_picture_that_is_not_drawn_yet_is_requested_again(watched):
+    page, answers = watched.page, [404, 404, 200]
+
+    def answer(route):
+        status = answers.pop(0)
+        route.fulfill(status=status, content_type="image/svg+xml", body=SQUARE if status == 200 else "")
+
+    page.route("**/models/plain_bearing/versions/1/picture", answer)
+    watched.open("/")
+    image = page.locator("img[src*=plain_bearing]")
+    image.scroll_into_view_if_needed()
+    expect(image).to_have_class("missing")
+    expect(image).to_have_class("")
+    assert image.evaluate("(one) => one.naturalWidth") == 4
+    assert answers == []

@@ -30,7 +30,7 @@ def test_every_bearing_of_the_engine_is_decided_on_its_page(watched, http, tmp_p
     answer = http.post(f"{API}/designs", json=films())
     assert answer.status_code in (201, 202), answer.text
     place = f"/designs/{answer.json()['id']}"
-    design = settled(http, place)
+    design = settled(http, place, seconds=LONG / 1000)
     assert design["state"] == "current", design.get("problem") or design.get("errors") or design
     page = watched.page
     watched.open(place, timeout=LONG)
