@@ -13,6 +13,7 @@ from itertools import zip_longest
 from weakref import WeakKeyDictionary
 
 import numpy as np
+from cachetools import LRUCache
 
 from app.plain import Raw
 from templates.core.errors import InvalidInputs
@@ -26,6 +27,12 @@ from templates.core.language.template import Template
 from templates.core.units.quantity import TypedQuantity
 
 EXPENSIVE = 0.05  # a longer calculation runs outside the server's process [s]
+
+IN_SERVER = 5e-3
+"""Longest measured time of an array in the server's process [s]. It is the interpreter's switch interval, so
+the event loop does not wait longer for the interpreter lock."""
+MOST_MEASURED = 1000  # kinds of requests whose time is kept
+FORGETTING = 0.99  # factor on a measured time each time it sends a request away, so that it is measured again
 
 QUICK = 1e-4  # longest time of a quick level at one point [s]
 
@@ -227,6 +234,31 @@ def _level_costs(cls: type[Template], level: str) -> tuple[float, float]:
     cost = measured.content["levels"].get(level, {}).get("cost", {})
     single, whole = float(cost.get("single", 0.0)), float(measured.content.get("cost_of_all", 1.0))
     return whole * single, whole * float(cost.get("vectorised", single))
+
+
+Kind = tuple[type[Template], str | None, float | None, frozenset[str] | None, int]
+"""Template, level, tolerance, outputs, and the power of two below the number of points."""
+
+
+class MeasuredTimes:
+    """The processor times of arrays in the server's process, by kind of request."""
+
+    def __init__(self) -> None:
+        self._times: LRUCache[Kind, float] = LRUCache(MOST_MEASURED)
+
+    def leaves(self, kind: Kind, estimate: float) -> bool:
+        """Return whether a request leaves the server: by its measured time, else by the estimate."""
+        if (seconds := self._times.get(kind)) is None:
+            return estimate > EXPENSIVE
+        if seconds > IN_SERVER:
+            self._times[kind] = FORGETTING * seconds
+            return True
+        return False
+
+    def note(self, kind: Kind, seconds: float) -> None:
+        """Keep the processor time of a request [s]; a shorter time replaces a longer one only gradually."""
+        before = self._times.get(kind, 0.0)
+        self._times[kind] = max(seconds, (before + seconds) / 2)
 
 
 Shape = tuple[int, ...]

@@ -1,12 +1,15 @@
 """`/templates/{id}/versions/{n}/evaluate`, `…/solve` and `…/worksheet`.
 
 A cheap calculation runs in the server, in its event loop or a thread. An expensive calculation, or one with a
-large body, goes to a calculation process.
+large body, goes to a calculation process. Arrays go there if earlier ones of their kind took more than
+`IN_SERVER` of processor time here.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
+from time import thread_time
 from typing import Annotated
 
 from fastapi import APIRouter, Header, Request, Response
@@ -25,12 +28,22 @@ from app.catalogue.routes.templates import Id, Number
 from app.http.access import get_client, needs
 from app.http.strict_requests import PlainRoute, StrictRequest
 from app.observation.processor_time import in_thread
-from app.pool.cost import EXPENSIVE, estimated_seconds, is_quick, solving_seconds, writing_seconds
+from app.pool.cost import (
+    EXPENSIVE,
+    Kind,
+    MeasuredTimes,
+    estimated_seconds,
+    is_quick,
+    solving_seconds,
+    writing_seconds,
+)
 from app.presentation.units import System
 from app.schemas.problems import Responses, refusals
 from app.workers.pieces import Pieces
+from templates.core.language.template import Template
 
 LONGEST_ID, PLAIN_NUMBER = 64, re.compile("[1-9][0-9]{0,5}")
+MEASURED = MeasuredTimes()
 FEW = 100  # points and names evaluated in the event loop if all levels are quick; a thread would cost more
 SYSTEMS: dict[str | None, System] = {None: "si", "si": "si", "us": "us"}
 
@@ -133,11 +146,30 @@ async def evaluate_template(
     form = _form(request, "evaluate")
     if form == "json" and body.points <= FEW and len(body.inputs) <= FEW and is_quick(cls):
         return _json(to_json(run_evaluate(cls, body)))
-    if estimated_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs) > EXPENSIVE:
+    if _leaves(cls, body):
         return await _answered(request, await _question(request, id, number, "evaluate"))
     if form == "npy":
-        return Response(await in_thread(lambda: npy(evaluated(cls, body))), media_type=NPY)
-    return _json(await in_thread(lambda: to_json(run_evaluate(cls, body))))
+        return Response(await in_thread(_timed, cls, body, lambda: npy(evaluated(cls, body))), media_type=NPY)
+    return _json(await in_thread(_timed, cls, body, lambda: to_json(run_evaluate(cls, body))))
+
+
+def _leaves(cls: type[Template], body: EvaluateIn) -> bool:
+    """Return whether a calculation process evaluates a request, not the server."""
+    estimate = estimated_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs)
+    return MEASURED.leaves(_kind(cls, body), estimate) if body.points > FEW else estimate > EXPENSIVE
+
+
+def _timed(cls: type[Template], body: EvaluateIn, answer: Callable[[], bytes]) -> bytes:
+    """Return an answer, and keep the processor time that this thread needed for it."""
+    start = thread_time()
+    content = answer()
+    MEASURED.note(_kind(cls, body), thread_time() - start)
+    return content
+
+
+def _kind(cls: type[Template], body: EvaluateIn) -> Kind:
+    outputs = None if body.outputs is None else frozenset(body.outputs)
+    return cls, body.level, body.tolerance, outputs, body.points.bit_length()
 
 
 @router.post(

@@ -3,7 +3,7 @@
 import pytest
 
 from app.catalogue.discovery import find_templates
-from app.pool.cost import EXPENSIVE, estimated_seconds, solving_seconds
+from app.pool.cost import EXPENSIVE, IN_SERVER, MeasuredTimes, estimated_seconds, solving_seconds
 
 CATALOGUE = find_templates(())
 FILM = CATALOGUE.get("oil_film", 2)
@@ -91,3 +91,33 @@ def test_a_claim_beyond_all_numbers_has_a_cost():
     for _ in range(120):
         deep = [deep] * 1000
     assert estimated_seconds(FILM, {**FILM.example, "radial_load": deep}) > EXPENSIVE
+
+
+KIND = (FILM, "map", None, frozenset({"minimum_film_thickness"}), 15)
+
+
+def test_without_a_measurement_the_estimate_decides_where_an_array_is_evaluated():
+    times = MeasuredTimes()
+    assert times.leaves(KIND, 1.1 * EXPENSIVE)
+    assert not times.leaves(KIND, 0.9 * EXPENSIVE)
+
+
+def test_a_measured_time_decides_against_the_estimate():
+    times = MeasuredTimes()
+    times.note(KIND, 2 * IN_SERVER)
+    assert times.leaves(KIND, 0.0)
+    assert not times.leaves((*KIND[:-1], 14), 0.0)
+    quick = MeasuredTimes()
+    quick.note(KIND, IN_SERVER / 2)
+    assert not quick.leaves(KIND, 2 * EXPENSIVE)
+
+
+def test_a_long_measured_time_is_measured_again_after_a_while():
+    times = MeasuredTimes()
+    times.note(KIND, 2 * IN_SERVER)
+    away = 0
+    while times.leaves(KIND, 0.0):
+        away += 1
+    assert 60 < away < 80
+    times.note(KIND, 4 * IN_SERVER)
+    assert times.leaves(KIND, 0.0)
