@@ -23,7 +23,7 @@ def network(count, seed, backward=0):
     late, early = max(columns, key=columns.get), min(columns, key=columns.get)
     relations += [relation(f"{early}.assumed_{n}", f"{late}.mass", forward=False) for n in range(backward)]
     blocks = [NetworkBlock(name=name, kind="step", column=column) for name, column in columns.items()]
-    return DesignNetwork(blocks=blocks, relations=relations, names=[])
+    return DesignNetwork(blocks=blocks, relations=relations, names=[], table=[])
 
 
 def relation(target, source, forward):
