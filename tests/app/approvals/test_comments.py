@@ -93,7 +93,7 @@ def test_every_change_of_a_design_leaves_a_row(room):
     room.author.post(f"{API}/{place}/revisions/1/restore")
     room.author.post(f"{API}/{place}/labels", json={"add_tags": ["x"], "archived": True})
     room.author.post(f"{API}/{place}/labels", json={"add_tags": ["x"], "archived": True})  # changes nothing
-    room.author.delete(f"{API}/{place}")
+    room.author.delete(f"{API}/{place}", headers={"If-Match": "*"})
     assert audited(room, place) == [
         ("design.create", "author", "/revisions/1"),
         ("design.change", "author", "/revisions/2"),
@@ -116,7 +116,7 @@ def test_a_refused_change_leaves_no_row(room):
     stale = room.author.patch(f"{API}/{place}", json={"name": "x"}, headers={"If-Match": '"9"'})
     assert stale.status_code == 412
     assert commented(room.author, design, "x", subject="nothing").status_code == 422
-    assert room.viewer.delete(f"{API}/{place}").status_code == 403
+    assert room.viewer.delete(f"{API}/{place}", headers={"If-Match": "*"}).status_code == 403
     assert audited(room, place) == before
 
 

@@ -56,7 +56,7 @@ def test_one_part_is_a_file_of_its_own_named_after_it(http, design):
 
 
 def test_what_is_no_part_is_refused_by_name(http, design):
-    assert faults(mesh_of(http, design, "step", part="block")) == {"part": "not_offered"}
+    assert faults(mesh_of(http, design, "png", part="block")) == {"part": "not_offered"}
     unknown = mesh_of(http, design, "stl", part="bal")
     assert faults(unknown) == {"part": "unknown_part"}
     assert "there is no part 'bal'; the only part is block" in unknown.text

@@ -85,7 +85,7 @@ def test_a_sweep_writes_its_rows(served, twice, tmp_path):
     result = run("sweep", twice["id"], "length=0..10mm/5", "--out", out, "--url", served.url)
     assert result.exit_code == 0, result.output
     table = list(csv.reader(out.read_text().splitlines()))
-    assert table[0][:3] == ["row", "length", OUT]
+    assert table[1][:3] == ["row", "length", OUT]
     assert [float(line[2]) for line in table[2:]] == pytest.approx([0, 5, 10, 15, 20])
     printed = run("sweep", twice["id"], "length=1,2cm", "--url", served.url)
     assert list(csv.reader(io.StringIO(printed.stdout)))[3][2] == "40.0"

@@ -105,7 +105,7 @@ def test_the_commands_take_a_variant(served, http, bars, tmp_path):
     swept = CliRunner().invoke(main, sweep)
     assert swept.exit_code == 0, swept.output
     table = list(csv.reader(io.StringIO(swept.stdout)))
-    assert [float(row[table[0].index(OUT)]) for row in table[2:]] == pytest.approx([10, 12, 14, 16, 18])
+    assert [float(row[table[1].index(OUT)]) for row in table[2:]] == pytest.approx([10, 12, 14, 16, 18])
     file = tmp_path / "study.json"
     file.write_text(json.dumps({"design": bars["id"], **GRID}), encoding="utf-8")
     shown = CliRunner().invoke(main, ["study", str(file), "--variant", "long", *url])

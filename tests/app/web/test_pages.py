@@ -181,7 +181,7 @@ def test_a_design_is_built_up_copied_restored_and_deleted_by_forms(http):
     assert settled(http, place)["parameters"] == {"k": "2 mm"}
     copy = http.post(f"{place}/copy").headers["location"]
     assert http.get(copy).status_code == 200
-    assert http.post(f"{copy}/delete").headers["location"] == "/#designs"
+    assert http.post(f"{copy}/delete", data={"revision": "1"}).headers["location"] == "/#designs"
     assert copy.rpartition("/")[2] not in http.get("/designs").text
 
 

@@ -73,7 +73,7 @@ def test_parameters_are_drawn_where_they_take_part():
         NetworkBlock(name="film", kind="step", column=2),
     ]
     relations = [relation("twice", "scale", True), relation("film.load", "twice", True)]
-    picture = drawing(DesignNetwork(blocks=blocks, relations=relations, names=[]))
+    picture = drawing(DesignNetwork(blocks=blocks, relations=relations, names=[], table=[]))
     assert {box.name: box.link for box in picture.boxes} == {
         "scale": "#-scale",
         "twice": "#-twice",
@@ -84,7 +84,7 @@ def test_parameters_are_drawn_where_they_take_part():
 def test_long_relations_are_cut_in_rows_and_whole_in_titles():
     blocks = [NetworkBlock(name=name, kind="step", column=at) for at, name in enumerate(("a", "b"))]
     long = NetworkRelation(target="b.x", source="a.y", relation="= " + "a.y + " * 100 + "1", forward=True)
-    picture = drawing(DesignNetwork(blocks=blocks, relations=[long], names=[]))
+    picture = drawing(DesignNetwork(blocks=blocks, relations=[long], names=[], table=[]))
     row = picture.boxes[1].inputs["b.x"]
     assert len(row.text) <= 40
     assert row.title == f"b.x {long.relation}"
@@ -92,4 +92,4 @@ def test_long_relations_are_cut_in_rows_and_whole_in_titles():
 
 
 def test_nothing_is_drawn_where_nothing_drives_anything():
-    assert drawing(DesignNetwork(blocks=[], relations=[], names=[])) is None
+    assert drawing(DesignNetwork(blocks=[], relations=[], names=[], table=[])) is None
