@@ -50,7 +50,7 @@ def test_of_two_keys_the_first_counts_and_a_wrong_one_is_not_passed_over(team):
     with team.http() as http:
         both = [("Authorization", good), ("Authorization", wrong)]
         assert http.get(f"{API}/me", headers=both).json()["name"] == "viewer"
-        for first in ("Bearer nothing", "Basic YWRtaW46YWRtaW4=", "Bearer", f"{good}, {wrong}"):
+        for first in ("Bearer nothing", "Bearer", f"{good}, {wrong}"):
             sent = [("Authorization", first), ("Authorization", good)]
             assert http.get(f"{API}/me", headers=sent).status_code == 401, first
 

@@ -92,13 +92,13 @@ def test_a_fault_of_the_sealer_that_lasts_is_logged_once(database, monkeypatch, 
     monkeypatch.setattr("app.identity.sealer.PAUSE", 0.005)
     tries = []
 
-    def fails(self):
+    def fails():
         tries.append(1)
         raise OSError("no space left")
 
+    sealer = Sealer(database)  # servers of other tests have sealers of their own
     with monkeypatch.context() as patch:
-        patch.setattr(Sealer, "run", fails)
-        sealer = Sealer(database)
+        patch.setattr(sealer, "run", fails)
         sealer.start()
         until(lambda: len(tries) > 5)
     until(lambda: "sealed again" in caplog.text)

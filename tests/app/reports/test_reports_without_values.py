@@ -52,7 +52,8 @@ def revision_of(document):
     if calculation.faults:
         return None
     kept = results.stored(calculation, [])
-    del kept["analyses"]
+    for more in ("analyses", "table"):
+        kept.pop(more)
     names = {"design": "d", "number": 1, "name": document.name, "parameters": {}, "models": {}}
     return Revision.model_validate({**names, **SI, **kept})
 
