@@ -187,7 +187,7 @@ def solved_errors(level: str) -> tuple[Array, Array, Errors, Errors]:
 def solved(level: str) -> dict[str, Array]:
     """Return the largest error of a level near each cell, against the converged solutions, with a margin."""
     x, y, of_film, linear = solved_errors(level)
-    some = slice(FEWER_POINTS.get(level, POINTS))
+    some = np.r_[: FEWER_POINTS.get(level, POINTS), x.size - LIGHT : x.size]
     return {
         **{name: spread(x[some], y[some], error[some], ROWS) for name, error in of_film.items()},
         **{name: spread(x, y, error, LIGHT_ROWS) for name, error in linear.items()},

@@ -7,7 +7,7 @@ film at a given viscosity. With a heat balance, friction and side flow determine
 temperature determines the viscosity. Every level takes friction and side flow from the map, so errors of the
 map affect every output.
 
-At each of the 1500 points (eps, B/D) of the film's checks there is a random bearing for each of three oils,
+At each of the 2100 points (eps, B/D) of the film's checks there is a random bearing for each of three oils,
 once with cooling by the oil and once with cooling by air. The true temperature is the one at which the power
 loss of the *converged* film is removed; the load is the one that this film carries. The added error is the
 result of a level at the temperature of its balance minus its result at the true temperature. The table

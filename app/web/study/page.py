@@ -64,7 +64,7 @@ async def study_page(
         unfinished=study.state in UNFINISHED,
         indices=_indices(study),
         limits=_limits(study, criteria),
-        judged={one.name: _sides(one)[0] for one in criteria},
+        judged={one.name: _words_of(study, _sides(one)[0]) for one in criteria},
         notice=notice,
         sort=sort,
         where=where,
@@ -144,6 +144,12 @@ def _limits(study: Study, criteria: list[Criterion]) -> dict[str, list[float]]:
         if line := _limit_of(study, one):
             limits.setdefault(line[0], []).append(line[1])
     return limits
+
+
+def _words_of(study: Study, side: str) -> str:
+    """Return an output in words, which is not among those of the study; an expression stays as it is."""
+    is_name = side.replace(".", "").isidentifier()
+    return study.words.get(side) or (side.rpartition(".")[2].replace("_", " ") if is_name else side)
 
 
 def _sides(one: Criterion) -> tuple[str, str]:

@@ -159,7 +159,7 @@ def test_the_width_with_the_least_power_and_a_film_of_three_micrometres(hand):
     expect(page.locator("[data-study-state]")).to_have_text("done", timeout=LONG)
     answer = page.locator("[data-answer]")
     expect(answer).to_contain_text("Smallest power loss")
-    hand.click("button", re.compile("^Use row"), within=page.locator(".best"))
+    hand.click("button", re.compile("^Use row"), within=page.get_by_role("region", name="Best row"))
     hand.wait_for_design()
     film = page.locator('[data-output="oil_film.minimum_film_thickness"] .number')
     assert float(film.text_content()) == pytest.approx(
