@@ -157,10 +157,13 @@ def test_the_form_is_accessible_and_fits_a_phone(watched, scheme):
 @pytest.mark.slow
 @pytest.mark.timeout(1200)
 def test_nine_bearings_from_the_front_page_in_at_most_twelve_fields(watched, http):
-    """Ten fields and the file of a diagram lead from the front page to a table with nine verdicts."""
+    """Ten fields and the file of a diagram lead from the front page to a table with nine verdicts.
+
+    Three mains are undecided: the estimated deflection of the bore is half the film within its stated error.
+    """
     page = watched.page
     watched.open("/")
-    page.get_by_role("link", name="Bearings of an engine").click()
+    page.get_by_role("link", name="Bearings of an engine", exact=True).click()
     page.get_by_label("Layout").select_option(FOUR["layout"])
     for name, text in FOUR.items():
         if name != "layout":
