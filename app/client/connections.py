@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Self, TypedDict, TypeVar
 
 import httpx
@@ -21,15 +20,15 @@ _REPEATABLE = frozenset({"GET", "HEAD"})
 Result = TypeVar("Result")
 
 
-@dataclass
 class Patience:
-    """The time that one request may still wait [s].
+    """The time that one request may still wait [s]; it gets less with every wait.
 
     A 429 refuses a request before any work. A 503 may come after a change was stored, so only requests that
     change nothing, or whose Idempotency-Key prevents a second change, are sent again.
     """
 
-    left: float
+    def __init__(self, seconds: float) -> None:
+        self.left = seconds
 
     def wait(self, request: Request, response: httpx.Response) -> float | None:
         """Return the time after which to send a request again [s]; None if its response is final."""

@@ -109,6 +109,8 @@ def _written(template: Calculation, comparison: Comparison) -> str:
         ~np.asarray(comparison.holds, dtype=bool) & np.asarray(comparison.where, dtype=bool),
     )
     broken = broken & ~np.isnan(low - high)  # without a value nothing is compared
+    if not broken.any():
+        return ""
     beyond = np.where(broken, np.abs(low - high), -2.0)
     worst = np.unravel_index(int(np.argmax(beyond)), beyond.shape)
     values = (float(scale.from_si(float(si[worst]))) for si in (low, high))
