@@ -14,9 +14,13 @@ from app.catalogue.schemas.templates import Template
 from app.presentation.input_text import text_of, value_of
 from app.reference import Reference
 from app.schemas.values import Given
+from app.web.engine_bearings.layouts import usual_orders
 from app.web.shared.forms import LIMITS
 from app.web.shared.services import PageServices
 from app.web.shared.sheet import Field
+
+FIRING_ORDER = "firing_order"
+"""The input that takes the usual orders of the known layouts."""
 
 
 def limits_of(filled: Mapping[str, str]) -> dict[str, JsonValue]:
@@ -84,8 +88,8 @@ def _rows(
 
 
 def with_rows(fields: Sequence[Field], tables: Sequence[LibraryTable]) -> list[Field]:
-    """Return the fields of inputs, with suitable rows of the library as suggestions."""
-    filling = [dict(_filling(_tail(one.name), tables)) for one in fields]
+    """Return the fields of inputs with their suggestions: rows of the library, usual firing orders."""
+    filling = [_suggestions(_tail(one.name), tables) for one in fields]
     return [
         replace(one, suggestions=rows) if rows else one for one, rows in zip(fields, filling, strict=True)
     ]
@@ -94,6 +98,10 @@ def with_rows(fields: Sequence[Field], tables: Sequence[LibraryTable]) -> list[F
 def _tail(name: str) -> str:
     """Return the name of an input without the name of its step."""
     return Reference.parse(name).own_name
+
+
+def _suggestions(name: str, tables: Sequence[LibraryTable]) -> dict[str, str]:
+    return usual_orders() if name == FIRING_ORDER else dict(_filling(name, tables))
 
 
 def _filling(name: str, tables: Sequence[LibraryTable]) -> Iterator[tuple[str, str]]:

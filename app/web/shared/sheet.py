@@ -34,6 +34,7 @@ class Field:
     value: object = None  # result of a relation, or a default; None if the text states the value
     rounded: RoundedValue | None = None  # how a rule rounds the value
     needed: bool = True
+    along: str | None = None  # the axis of a list: all lists along it have the same length
     is_list: bool = False  # whether it has several values, to be edited item by item or pasted
     own: bool = False  # whether it is a design's own parameter, which has only its name
     assumed: str = ""  # source of a proposed value that is still in use
@@ -155,6 +156,7 @@ def _field(
         options=declared.enum,
         value=value,
         needed=needed,
+        along=declared.along,
         is_list=declared.is_list or text.startswith("["),
     )
 

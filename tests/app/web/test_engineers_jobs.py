@@ -178,7 +178,7 @@ def test_the_width_with_the_least_power_and_a_film_of_three_micrometres(hand):
     page.locator("[name='high.0']").fill("40 mm")
     page.locator("[name='objective.0']").select_option("oil_film.power_loss")
     hand.fields += 4
-    standard = page.locator("label", has_text="minimum_film_thickness >= smallest_permissible_film")
+    standard = page.locator("label", has_text="≥ smallest permissible film")
     standard.get_by_role("checkbox").uncheck()  # that of ISO 7902 is 5 µm; this bearing may have less
     hand.clicks += 1
     hand.click("button", "Start the study")
