@@ -12,6 +12,7 @@ from typing import Protocol
 
 from app.presentation import numbers
 from app.reference import Reference
+from templates.core.criteria.judgement import in_words
 
 WORDS = {"met": "met", "not_met": "not met", "undecided": "undecided", "not_checked": "not checked"}
 _SIGN = re.compile(r"^(.*?)\s*(>=|<=)\s*(.*)$", re.DOTALL)
@@ -167,13 +168,13 @@ def step_of(name: str, require: str) -> str:
 def subject_of(name: str, require: str) -> str:
     """Return a criterion in words, as every table names it: `film: bore deflection (rigid)`."""
     step, words = step_of(name, require), title(name, require)
-    return f"{step}: {words}" if step else words
+    return f"{plain_name(step)}: {words}" if step else words
 
 
 def limit_of(require: str) -> str:
     """Return the sign and the limit of a requirement in words: `≥ permissible film`."""
     _, sign, limit = sides(require)
-    return f"{SIGNS.get(sign, sign)} {plain_name(limit)}"
+    return f"{SIGNS.get(sign, sign)} {in_words(limit)}"
 
 
 def title(name: str, require: str) -> str:

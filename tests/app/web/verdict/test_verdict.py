@@ -311,4 +311,4 @@ def test_a_criterion_is_named_in_words_with_its_limit():
     )
     assert subject_of("film.rigid", "bore_deflection <= gap / 2") == "film: bore deflection (rigid)"
     assert limit_of("bore_deflection <= minimum_film_thickness / 2") == "≤ minimum film thickness / 2"
-    assert limit_of("film.minimum_film_thickness >= 3 um") == "≥ 3 um"
+    assert limit_of("film.minimum_film_thickness >= 3 um") == "≥ 3 µm"
