@@ -34,12 +34,12 @@ class Field:
     value: object = None  # result of a relation, or a default; None if the text states the value
     rounded: RoundedValue | None = None  # how a rule rounds the value
     needed: bool = True
-    along: str | None = None  # the axis of a list: all lists along it have the same length
     is_list: bool = False  # whether it has several values, to be edited item by item or pasted
     own: bool = False  # whether it is a design's own parameter, which has only its name
     assumed: str = ""  # source of a proposed value that is still in use
     labels: Mapping[str, str] = field(default_factory=dict)  # words of the options
     suggestions: Mapping[str, str] = field(default_factory=dict)  # suggested texts, each with its meaning
+    beside: tuple[str, ...] = ()  # controls of lists that have as many items as the suggestion that fits
 
     @property
     def id(self) -> str:
@@ -156,7 +156,6 @@ def _field(
         options=declared.enum,
         value=value,
         needed=needed,
-        along=declared.along,
         is_list=declared.is_list or text.startswith("["),
     )
 

@@ -1,18 +1,17 @@
-// The placeholder of a list names the suggestions that are as long as the other lists along its axis.
+// The placeholder of a list names the suggestions with as many items as the lists beside it.
 const FEW = 2; // suggestions in a placeholder
-const length = (text) => (text.match(/[0-9]+([.,][0-9]+)?/g) ?? []).length;
+const count = (text) => (text.match(/[0-9]+([.,][0-9]+)?/g) ?? []).length;
 
-export function startSuggestions(form = document) {
-  const lists = [...form.querySelectorAll("input[data-along]")];
-  const fit = (field) => {
-    const others = lists.filter((one) => one !== field && one.dataset.along === field.dataset.along);
-    const count = Math.max(...others.map(({ value }) => length(value)), 0);
-    const alike = [...field.list.options].filter(({ value }) => length(value) === count).slice(0, FEW);
-    field.placeholder = alike.map(({ value, text }) => `${value} (${text})`).join(", ") || field.dataset.hint;
-  };
-  const open = lists.filter(({ list }) => list);
-  for (const field of open) field.dataset.hint = field.placeholder;
-  const all = () => open.forEach(fit);
-  form.addEventListener("input", all);
-  all();
+export function startSuggestions(root = document) {
+  for (const field of root.querySelectorAll("input[data-beside]")) {
+    const names = field.dataset.beside.split(" "), usual = field.placeholder;
+    const beside = names.map((name) => field.form.elements.namedItem(name)).filter(Boolean);
+    const fit = () => {
+      const items = Math.max(...beside.map(({ value }) => count(value)), 0);
+      const alike = [...field.list.options].filter(({ value }) => count(value) === items).slice(0, FEW);
+      field.placeholder = alike.map(({ value, text }) => `${value} (${text})`).join(", ") || usual;
+    };
+    for (const other of beside) other.addEventListener("input", fit);
+    fit();
+  }
 }
