@@ -43,6 +43,7 @@ from app.reports.service import Reports
 from app.retention.service import Retention
 from app.settings import Settings
 from app.settings.machines import LOCAL
+from app.signing.keys import opened_keys
 from app.solids.analyses import ANALYSIS, Analyses, ModelAnalysis
 from app.solids.analysis_process import AnalysisRunner
 from app.solids.builds import Builds
@@ -158,6 +159,7 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
                 "calculations": readiness.Processes(calculations.pool),
             }
         ),
+        stamp_keys=opened_keys(settings),
         **questions,
     )
 

@@ -7,6 +7,7 @@ they name parameters, never a design or a relation. A STEP file of an older reci
 
 from __future__ import annotations
 
+import json
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -20,6 +21,7 @@ FaceMarks = Mapping[Face, tuple[str, ...]]
 _SHELL = re.compile(r"^#\d+ = (?:CLOSED|OPEN)_SHELL\('[^']*',\(([^)]*)\)", re.MULTILINE)
 _FACE = re.compile(r"^(#\d+) = ADVANCED_FACE\('([^']*)'", re.MULTILINE)
 _REFERENCE = re.compile(r"#\d+")
+_MARK = re.compile(rb"ADVANCED_FACE\('([a-z0-9_ ]+)'")
 
 
 def face_marks(dimensions: Mapping[str, object]) -> FaceMarks:
@@ -65,3 +67,14 @@ def _entities(text: str, bodies: Iterable[Body]) -> list[tuple[str, Face]]:
     entities = [entity for shell in _SHELL.finditer(text) for entity in _REFERENCE.findall(shell[1])]
     faces = [(body.name, number) for body in bodies for number in range(len(body.shape.Faces()))]
     return list(zip(entities, faces, strict=True)) if len(entities) == len(faces) else []
+
+
+def parameters_in(file: bytes, kind: str) -> list[str]:
+    """Return the parameters that faces of a STEP or GLB file carry, by name."""
+    if kind == "glb":
+        about = json.loads(file[20 : 20 + int.from_bytes(file[12:16], "little")])
+        primitives = [drawn for mesh in about["meshes"] for drawn in mesh["primitives"]]
+        return sorted(
+            {name for drawn in primitives for name in drawn.get("extras", {}).get("parameters", ())}
+        )
+    return sorted({name for mark in set(_MARK.findall(file)) for name in mark.decode().split()})

@@ -18,6 +18,7 @@ from cad.drafting.title import STAMPED as STAMPED_FIELDS
 from cad.drafting.title import STAMPED_OF_PART
 from cad.file_names import name, plain_name, stem, wide_stem
 from cad.part21 import end_of_string, plain, quoted
+from cad.signed_file import without_claims
 
 _STRING = r"'(?:[^']|'')*'"
 _FILE = re.compile(rf"FILE_NAME\(({_STRING}\s*,\s*{_STRING})")
@@ -65,6 +66,8 @@ class Stamp:
     mark: str = ""
     part: str = ""
     rounded: str = ""  # parameters that the design rounds: calculated and chosen values
+    id: str = ""  # of the design
+    build: str = ""  # its key
 
     @property
     def called(self) -> str:
@@ -164,7 +167,7 @@ def is_copy(file: bytes, original: bytes) -> bool:
 
     The time is linear in both lengths.
     """
-    text, source = file.decode("latin-1"), original.decode("latin-1")
+    text, source = without_claims(file).decode("latin-1"), original.decode("latin-1")
     place, done = 0, 0
     for hole in _holes(source):
         if not text.startswith(source[done : hole.start], place):
@@ -215,6 +218,7 @@ def _root(volume: str, stamp: Stamp) -> tuple[str, ...]:
         f"model {stamp.model}",
         stamp.material,
         "" if stamp.mass is None else f"mass {stamp.mass:.6g} kg",
+        f"crankwright:{stamp.id}:{stamp.revision}" if stamp.id else "",  # what another program may keep
     )
     return stamp.part_number, f"{name(stamp.design)}_{stamp.called}", ", ".join(filter(None, described))
 

@@ -41,6 +41,7 @@ from app.presentation.units import System
 from app.reports.paper import Press
 from app.reports.service import Reports
 from app.settings import Settings
+from app.signing.keys import StampKeys
 from app.solids.analyses import Analyses
 from app.solids.models import Models
 from app.solids.repair import ArtifactRepair
@@ -95,6 +96,7 @@ TheApproving = Annotated[ApprovalService, Depends(_part("approving"))]
 TheComments = Annotated[Comments, Depends(_part("comments"))]
 TheReports = Annotated[Reports, Depends(_part("reports"))]
 ThePress = Annotated[Press, Depends(_part("press"))]
+TheStampKeys = Annotated[StampKeys | None, Depends(_part("stamp_keys"))]
 TheReadiness = Annotated[Readiness, Depends(_part("readiness"))]
 
 Units = Annotated[
