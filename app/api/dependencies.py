@@ -9,6 +9,7 @@ from collections.abc import AsyncIterator, Awaitable, Callable
 from typing import Annotated
 
 from fastapi import Depends, Header, Query, Request
+from fastapi.concurrency import run_in_threadpool
 
 from app.api.event_streams import Still, always
 from app.api.responses import Threads
@@ -116,6 +117,17 @@ async def get_once(request: Request, client: TheClient, idempotency_key: Idempot
 
 
 TheOnce = Annotated[Once, Depends(get_once)]
+
+
+async def require_room(request: Request, identity: TheIdentity) -> None:
+    """Refuse a file, before it arrives, that does not fit into the storage of its principal.
+
+    Raises
+    ------
+    LimitReached
+        If it does not fit.
+    """
+    await run_in_threadpool(identity.require_room, int(request.headers.get("content-length", 0)))
 
 
 async def expensive_steps(request: Request, client: TheClient) -> None:

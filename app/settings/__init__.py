@@ -82,7 +82,10 @@ class Settings(BaseSettings):
             '`["10.0.0.0/24"]`'
         ),
     )
-    body_limit: int = Field(16 * 2**20, gt=0, description="largest request body [bytes]")
+    body_limit: int = Field(
+        16 * 2**20, gt=0, description="largest request body that is not the file of a model [bytes]"
+    )
+    upload_limit: int = Field(200 * 2**20, gt=0, description="largest uploaded file of a model [bytes]")
     template_folders: tuple[Path, ...] = Field((), description="folders of a team's own templates")
     template_seconds: float = Field(
         30.0, gt=0, description="longest time for loading and checking a team's file [s]"
