@@ -2,7 +2,7 @@
 
 NOT_OBTAINED: tuple[str, ...] = (
     "Ferron, Frêne, Boncompain 1983: temperatures and pressures of a plain bearing of 100 mm. No copy.",
-    "Ma, Taylor 1996: power, flow and temperatures of a plain and a lemon bearing of 110 mm. First page only.",
+    "Ma, Taylor 1996: power, flow and temperatures of two bearings of 110 mm. First page only.",
     "Vladescu et al. 2018: friction and temperature of an engine bearing machine. First page only.",
     "DuBois, Ocvirk, Wehe 1955 (NACA TN 3491): measured eccentricity, friction and flow. First page only.",
     "Fitzgerald 1986 (thesis, Sheffield): temperatures of journal bearings. Contents only.",

@@ -65,12 +65,9 @@ def _counts(done: list[tuple[Case, list[Comparison]]]) -> str:
     sources = {case.reference.head["source"] for case, _ in done}
     kinds = Counter(case.kind for case, _ in done)
     agreed = sum(agrees(compared) for _, compared in done)
-    return (
-        f"**{len(published)} published cases from {len(sources)} sources, in {len(done)} comparisons: {agreed} "
-        f"agree, {len(done) - agreed} differ.** By kind: "
-        + ", ".join(f"{count} × {kind}" for kind, count in sorted(kinds.items()))
-        + ".\n"
-    )
+    number = f"{len(published)} published cases from {len(sources)} sources, in {len(done)} comparisons"
+    each = ", ".join(f"{count} × {kind}" for kind, count in sorted(kinds.items()))
+    return f"**{number}: {agreed} agree, {len(done) - agreed} differ.** By kind: {each}.\n"
 
 
 def _summary(done: list[tuple[Case, list[Comparison]]]) -> Iterator[str]:
