@@ -44,6 +44,7 @@ from app.reports.service import Reports
 from app.retention.service import Retention
 from app.settings import Settings
 from app.settings.machines import LOCAL
+from app.signing.keys import opened_keys
 from app.solids.analyses import ANALYSIS, Analyses, ModelAnalysis
 from app.solids.analysis_process import AnalysisRunner
 from app.solids.builds import Builds
@@ -110,7 +111,9 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
     stack.callback(programs.close)
     builds = Builds(database, store, programs)
     analysing = AnalysisRunner(
-        database, store, Limits(settings.analysis_deadline, settings.analysis_memory_mb)
+        database,
+        store,
+        Limits(settings.analysis_deadline, settings.analysis_memory_mb, "CRANKWRIGHT_ANALYSIS_MEMORY_MB"),
     )
     register_jobs(jobs, builds, analysing, catalogues, calculations, calculation_cache)
     designs = Designs(database, jobs, catalogues, calculation_cache)
@@ -154,7 +157,11 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
         approving=ApprovalService(database, store),
         comments=Comments(database),
         reports=Reports(database, store, models, catalogues, settings.owner),
-        press=Press(workers.here, Limits(settings.job_deadline, settings.job_memory_mb), settings.workers),
+        press=Press(
+            workers.here,
+            Limits(settings.job_deadline, settings.job_memory_mb, "CRANKWRIGHT_JOB_MEMORY_MB"),
+            settings.workers,
+        ),
         streams=Streams(settings.streams, settings.streams_per_client),
         readiness=readiness.Readiness(
             {
@@ -163,6 +170,7 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
                 "calculations": readiness.Processes(calculations.pool),
             }
         ),
+        stamp_keys=opened_keys(settings),
         **questions,
     )
 
@@ -256,7 +264,7 @@ def find_catalogues(settings: Settings, worker: Worker) -> Catalogues:
     """
     if not settings.template_folders:
         return Catalogues(find_templates(()), find_models())
-    limits = Limits(settings.template_seconds, settings.job_memory_mb)
+    limits = Limits(settings.template_seconds, settings.job_memory_mb, "CRANKWRIGHT_JOB_MEMORY_MB")
     check = CheckInProcess(worker, limits)
     if settings.engine != LOCAL:
         return TeamCatalogues(settings.template_folders, check)

@@ -153,7 +153,22 @@ def check_places(model: CadModel, parts: Sequence[Part], bodies: Sequence[Body])
                 )
 
 
-def check_dimensions(model: CadModel, seen: Mapping[str, PartSurfaces]) -> dict[str, Dimension]:
+def dimensions_of(model: CadModel, seen: Mapping[str, PartSurfaces]) -> Mapping[str, Dimension]:
+    """Return every parameter that the solid shows, as read from its surfaces, by API name.
+
+    Raises
+    ------
+    GeometryError
+        `dimension`, if a surface is missing.
+    """
+    try:
+        return model.dimensions(seen)
+    except LookupError as error:
+        detail = f"{model.id} does not show the surfaces from which its dimensions are read ({error})"
+        raise GeometryError("dimension", detail, model.inputs) from error
+
+
+def check_dimensions(model: CadModel, shown: Mapping[str, Dimension]) -> dict[str, Dimension]:
     """Compare every parameter that the solid shows with the requested value.
 
     Return the measured values by API name. Each item of a list is compared; a single number applies to all
@@ -164,14 +179,10 @@ def check_dimensions(model: CadModel, seen: Mapping[str, PartSurfaces]) -> dict[
     GeometryError
         `dimension`, naming the parameters that are not as requested.
     """
-    try:
-        measured = {
-            name: [round(item, 9) for item in value] if isinstance(value, list) else round(value, 9)
-            for name, value in model.dimensions(seen).items()
-        }
-    except LookupError as error:
-        detail = f"{model.id} does not show the surfaces from which its dimensions are read ({error})"
-        raise GeometryError("dimension", detail, model.inputs) from error
+    measured: dict[str, Dimension] = {
+        name: [round(item, 9) for item in value] if isinstance(value, list) else round(value, 9)
+        for name, value in shown.items()
+    }
     wanted: dict[str, Dimension] = {}
     for name in measured:
         declared = model.inputs[name]

@@ -11,6 +11,7 @@ from cad.drafting.paper import as_pdf
 from cad.drafting.sheet import write_dxf
 from cad.drafting.svg import write_drawing
 from cad.drawing import write_svg
+from cad.face_marks import read_marks
 from cad.file_kinds import BY_PART, STEP, VALIDATED, bodies_of, deflection_of, plain_kind
 from cad.gltf import write_glb
 from cad.header import Header, read_header
@@ -45,18 +46,20 @@ def derive(step: bytes, kind: str) -> bytes:
     bodies = bodies_of(kind, whole)
     if (write := _DRAWERS.get(plain_kind(kind))) is not None:
         return write(bodies, header, whole)
-    if (deflection := deflection_of(kind, bodies)) is None:
+    deflection = deflection_of(kind, bodies)
+    if plain_kind(kind) == GLB:
+        title = header.model if header else "model"
+        return write_glb(_meshes(bodies, deflection), title, read_marks(step, whole))
+    if deflection is None:
         return _WRITERS[plain_kind(kind)](bodies, header)
     return _MESH_WRITERS[plain_kind(kind)](bodies, header, deflection)
 
 
+GLB = "glb"
+
 Writer = Callable[[Sequence[Body], Header | None], bytes]
 Drawer = Callable[[Sequence[Body], Header | None, Sequence[Body]], bytes]
 MeshWriter = Callable[[Sequence[Body], Header | None, float | None], bytes]
-
-
-def _write_glb(bodies: Sequence[Body], header: Header | None, deflection: float | None = None) -> bytes:
-    return write_glb(_meshes(bodies, deflection), header.model if header else "model")
 
 
 def _write_stl(bodies: Sequence[Body], _header: Header | None, deflection: float | None = None) -> bytes:
@@ -79,9 +82,8 @@ def _meshes(bodies: Sequence[Body], deflection: float | None = None) -> list[Mes
     return [closed_mesh(body, deflection) for body in bodies]
 
 
-_MESH_WRITERS: dict[str, MeshWriter] = {"glb": _write_glb, "stl": _write_stl, "3mf": _write_3mf}
+_MESH_WRITERS: dict[str, MeshWriter] = {"stl": _write_stl, "3mf": _write_3mf}
 _WRITERS: dict[str, Writer] = {
-    "glb": _write_glb,
     "stl": _write_stl,
     "3mf": _write_3mf,
     "brep": _write_brep,
@@ -94,7 +96,7 @@ _DRAWERS: dict[str, Drawer] = {
     "drawing.pdf": lambda bodies, header, whole: as_pdf(write_drawing(bodies, header, whole)),
 }
 
-DERIVED = (VALIDATED, *_WRITERS, *_DRAWERS)
+DERIVED = (VALIDATED, GLB, *_WRITERS, *_DRAWERS)
 """Kinds of files that are derived from the STEP file."""
 
 

@@ -63,26 +63,28 @@ class Glb:
         self.binary = data[28 + length : 28 + length + size]
         if len(self.about["meshes"]) != 1 or len(self.about["nodes"]) != 2:
             raise GeometryError("not_one_solid", "a field needs a model with one body at one position")
-        (self.drawn,) = self.about["meshes"][0]["primitives"]
+        self.primitives = self.about["meshes"][0]["primitives"]  # of the same vertices
+        self.attributes = self.primitives[0]["attributes"]
 
     @cached_property
     def points(self) -> Array:
         """Return the vertices (n, 3) [mm] in the axes of the model."""
         matrix = np.array(self.about["nodes"][1]["matrix"]).reshape(4, 4).T
-        own = self._read(self.drawn["attributes"]["POSITION"], np.float32, 3)
+        own = self._read(self.attributes["POSITION"], np.float32, 3)
         return np.asarray(own @ matrix[:3, :3].T + matrix[:3, 3])
 
     @cached_property
     def normals(self) -> Array:
         """Return the outward normals of the vertices (n, 3)."""
         matrix = np.array(self.about["nodes"][1]["matrix"]).reshape(4, 4).T
-        own = self._read(self.drawn["attributes"]["NORMAL"], np.float32, 3)
+        own = self._read(self.attributes["NORMAL"], np.float32, 3)
         return np.asarray(own @ matrix[:3, :3].T)
 
     @cached_property
     def triangles(self) -> Integers:
         """Return the vertex numbers of the triangles (m, 3)."""
-        return self._read(self.drawn["indices"], np.uint32, 3).astype(np.intp)
+        every = [self._read(drawn["indices"], np.uint32, 3) for drawn in self.primitives]
+        return np.concatenate(every).astype(np.intp)
 
     @cached_property
     def faces(self) -> Integers:
@@ -112,9 +114,9 @@ class Glb:
             "count": len(linear),
         })  # fmt: skip
         about["buffers"][0]["byteLength"] = start + len(data)
-        (drawn,) = about["meshes"][0]["primitives"]
-        drawn["attributes"]["COLOR_0"] = len(about["accessors"]) - 1
-        about["materials"][drawn["material"]]["pbrMetallicRoughness"] = _MATT
+        for drawn in about["meshes"][0]["primitives"]:
+            drawn["attributes"]["COLOR_0"] = len(about["accessors"]) - 1
+        about["materials"][0]["pbrMetallicRoughness"] = _MATT
         about["nodes"][0]["extras"] = {
             "field": field.title, "unit": field.unit, "low": field.low, "high": field.high,
         }  # fmt: skip

@@ -1,17 +1,20 @@
 """GLB (glTF 2.0, binary): every body once, as a mesh with its colour, and a node for each of its positions.
 
 glTF uses metres with y up; the root node rotates and scales the model, which is in millimetres with z up.
+Faces that carry the same parameters are one primitive of the mesh; its `extras` name the parameters:
+`{"parameters": ["pin_diameter"]}`. Faces that carry none come last, without `extras`.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cad.face_marks import FaceMarks
 from cad.mesh import Mesh
 from cad.step import rigid
 
@@ -20,8 +23,11 @@ _ARRAY_BUFFER, _ELEMENT_BUFFER = 34962, 34963
 _Z_UP_MM = [1e-3, 0, 0, 0, 0, 0, -1e-3, 0, 0, 1e-3, 0, 0, 0, 0, 0, 1]  # matrix in column order
 
 
-def write_glb(meshes: Sequence[Mesh], title: str = "model") -> bytes:
-    """Return meshes as one GLB file; its root node has the title, every other node the name of its body."""
+def write_glb(meshes: Sequence[Mesh], title: str, marks: FaceMarks) -> bytes:
+    """Return meshes as one GLB file; its root node has the title, every other node the name of its body.
+
+    `marks` are the parameters that the faces carry.
+    """
     buffers = _Buffers()
     nodes = [
         _node(i, place, name)
@@ -36,7 +42,7 @@ def write_glb(meshes: Sequence[Mesh], title: str = "model") -> bytes:
             {"name": title, "matrix": _Z_UP_MM, "children": list(range(1, len(nodes) + 1))},
             *nodes,
         ],
-        "meshes": [_mesh(one, i, buffers) for i, one in enumerate(meshes)],
+        "meshes": [_mesh(one, i, buffers, marks) for i, one in enumerate(meshes)],
         "materials": [_material(one) for one in meshes],
         **buffers.described(),
     }
@@ -79,17 +85,27 @@ def _node(mesh: int, place: Any, name: str) -> dict[str, Any]:
     return {"name": name, "mesh": mesh, "matrix": matrix.T.ravel().tolist()}
 
 
-def _mesh(one: Mesh, material: int, buffers: _Buffers) -> dict[str, Any]:
+def _mesh(one: Mesh, material: int, buffers: _Buffers, marks: FaceMarks) -> dict[str, Any]:
     points = one.points.astype(np.float32)
     bounds = {"min": points.min(axis=0).tolist(), "max": points.max(axis=0).tolist()}
     position = buffers.add(points, _ARRAY_BUFFER, "VEC3", count=len(points), **bounds)
     normal = buffers.add(one.normals.astype(np.float32), _ARRAY_BUFFER, "VEC3", count=len(points))
-    corners = one.triangles.astype(np.uint32).ravel()
-    indices = buffers.add(corners, _ELEMENT_BUFFER, "SCALAR", count=len(corners))
-    drawn = {
-        "attributes": {"POSITION": position, "NORMAL": normal}, "indices": indices, "material": material,
-    }  # fmt: skip
-    return {"name": one.name, "primitives": [drawn]}
+    drawn = {"attributes": {"POSITION": position, "NORMAL": normal}, "material": material}
+    return {"name": one.name, "primitives": [
+        {**drawn, "indices": buffers.add(corners, _ELEMENT_BUFFER, "SCALAR", count=len(corners)),
+         **({"extras": {"parameters": [*parameters]}} if parameters else {})}
+        for parameters, corners in _by_marks(one, marks)
+    ]}  # fmt: skip
+
+
+def _by_marks(one: Mesh, marks: FaceMarks) -> Iterator[tuple[tuple[str, ...], NDArray[np.uint32]]]:
+    """Yield the corners of all triangles with the same parameters; those without parameters come last."""
+    of_face = [marks.get((one.name, number), ()) for number in range(int(one.faces.max()) + 1)]
+    for parameters in sorted(set(of_face), key=lambda names: (not names, names)):
+        faces = [number for number, names in enumerate(of_face) if names == parameters]
+        corners = one.triangles[np.isin(one.faces, faces)].astype(np.uint32).ravel()
+        if len(corners):
+            yield parameters, corners
 
 
 def _material(one: Mesh) -> dict[str, Any]:

@@ -14,6 +14,7 @@ from dataclasses import replace
 from cad.catalogue import models
 from cad.drafting.declaration import DrawingDeclaration
 from cad.errors import UnreadableStep
+from cad.face_marks import marked, read_marks
 from cad.file_kinds import bodies_of
 from cad.header import ONLY_PART, Header, read_header
 from cad.inspect import look_at
@@ -52,7 +53,7 @@ def part_step(step: bytes, kind: str) -> bytes:
     written = write_step(
         [_part(body, step)], replace(header, parameters=parameters), annotations if declared.limits else None
     )
-    return with_validation(_with_volume(written, body))
+    return with_validation(_with_volume(marked(written, [body], read_marks(step, whole)), body))
 
 
 def _forms(header: Header, declared: DrawingDeclaration) -> Mapping[str, FormTolerances]:

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from OCP.Standard import Standard_OutOfMemory
 
 from cad.catalogue import models
 from cad.checks import (
@@ -27,8 +28,10 @@ from cad.checks import (
     check_overlaps,
     check_places,
     compared,
+    dimensions_of,
 )
 from cad.errors import GeometryError
+from cad.face_marks import face_marks, marked
 from cad.header import Header
 from cad.inspect import bounding_box, look_at, measure, summarise
 from cad.lists import rounded, written
@@ -56,7 +59,7 @@ __all__ = [
 Value = float | str | list[float]
 """Value of a parameter: a number, a word, or a list; limit deviations and their zone have their own keys."""
 
-RECIPE = 6
+RECIPE = 7
 """Version of this package's output; increase it whenever equal parameters give other bytes or measures."""
 
 MADE_BY = f"{KERNEL}, recipe {RECIPE}"
@@ -227,12 +230,13 @@ def regenerate_shape(model: CadModel, texts: Mapping[str, str], *, report: Repor
     with _kernel(model):
         between = compared(model, bodies, lambda done, what: report(0.8 + 0.2 * done, what))
     check_clearances(model, between)
-    seen = look_at(bodies)
-    dimensions = check_dimensions(model, seen)
+    shown = dimensions_of(model, look_at(bodies))
+    dimensions = check_dimensions(model, shown)
     places: dict[str, TolerancePlace] = {}
     if annotations is not None:
         check_statements(parts, bodies, annotations, read_statements(step))
-        places = tolerance_places(model, model.dimensions(seen))
+        places = tolerance_places(model, shown)
+    step = marked(step, bodies, face_marks(shown))
     densities = {part.name: part.density for part in parts}
     measures = summarise(bodies, measured, densities, box) | between_parts(model, between)
     report(1.0, "done")
@@ -310,8 +314,8 @@ def _kernel(model: CadModel) -> Iterator[None]:
         raise GeometryError(
             error.code, f"{model.id}: {error.detail}", error.parameters or model.inputs
         ) from None
-    except MemoryError:
-        raise  # the caller handles the limit
+    except (MemoryError, Standard_OutOfMemory):
+        raise MemoryError from None  # the caller handles the limit
     except Exception as error:
         detail = f"the kernel failed on {model.id}: {type(error).__name__}: {error}"
         raise GeometryError("kernel", detail, model.inputs) from error

@@ -36,6 +36,7 @@ from app.pool.steps import Steps
 from app.reports.paper import Press
 from app.reports.service import Reports
 from app.settings import Settings
+from app.signing.keys import StampKeys
 from app.solids.analyses import Analyses
 from app.solids.models import Models
 from app.solids.repair import ArtifactRepair
@@ -98,3 +99,4 @@ class Services:
     press: Press
     streams: Streams
     readiness: Readiness
+    stamp_keys: StampKeys | None

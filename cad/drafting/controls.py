@@ -16,9 +16,10 @@ import numpy as np
 
 from cad.drafting.curves import Point
 from cad.drafting.declaration import Control, DrawingDeclaration
-from cad.drafting.dimension_layout import CROSSING, TEXT, DatumPlace, NoRoom, PlacedDimension
+from cad.drafting.dimension_layout import CROSSING, DatumPlace, NoRoom, PlacedDimension
 from cad.drafting.formats import FORMATS
 from cad.drafting.frames import Frame
+from cad.drafting.labels import TEXT
 from cad.drafting.letter_width import width_of
 from cad.drafting.page import Page
 from cad.drafting.room import Rectangle, Room

@@ -15,16 +15,16 @@ import numpy as np
 
 from cad.drafting.curves import Point
 from cad.drafting.formats import FORMATS
-from cad.drafting.labels import Label, label_of
+from cad.drafting.labels import TEXT, Label, label_of
 from cad.drafting.lanes import Lane
 from cad.drafting.parameter_match import Dimension
 from cad.drafting.plan import LANE, Plan
-from cad.drafting.room import Rectangle, Room, around, overlap
+from cad.drafting.room import Rectangle, Room, around, crossed, overlap
 from cad.drafting.symbols import Symbol, datum
 
-TEXT = 3.5  # height of letters [mm on paper]
 GAP = 0.9  # between a dimension line and its words [mm on paper]
 EXTENSION = 1.5  # of an extension line beyond its dimension line [mm on paper]
+ASIDE = 4.0  # from an oblique size to its dimension line [mm on paper]
 CROSSING = 12.0  # length that a leader may add in order to cross one line less [mm on paper]
 
 _ARROWS = 7.0  # shortest dimension line with its arrows within [mm on paper]
@@ -368,23 +368,24 @@ class DimensionLayout:
             yield around(words, width, height), placed, lines[:1] + _nearest(lines[1:])
 
     def _beside_angle(self, one: Dimension, label: Label, right: float) -> Iterator[Try]:
-        """Yield the words beside a narrow angle, at one end of an arc that runs across both legs."""
+        """Yield the words above the dimension arc of a narrow angle, which is extended beyond one leg."""
         corner, *legs = self._on_paper(one, right)
         low, high = sorted(atan2(y - corner[1], x - corner[0]) for x, y in legs)
         middle = dist(corner, legs[0])
         if high - low > _NARROW:
             return
-        width, height = label.width(TEXT), label.height(TEXT)
+        width, above = label.width(TEXT), GAP + label.height(TEXT) / 2
         for away in self._distances():
             for radius in (middle + away - _NEAREST, middle - away):
-                tail, beyond = _TAIL / radius, (_TAIL + GAP + width / 2) / radius
-                steps = [low - tail + (high - low + 2 * tail) * i / 24 for i in range(25)]
-                arc = [_polar(corner, radius, turn) for turn in steps]
+                tail, end = _TAIL / radius, (_TAIL + width) / radius
                 base = self.plan.at(*_polar(corner, radius, (low + high) / 2))
-                for turn in (high + beyond, low - beyond):
-                    words = _polar(corner, radius, turn)
+                for start, stop in ((low - tail, high + end), (low - end, high + tail)):
+                    arc = [_polar(corner, radius, start + (stop - start) * i / 24) for i in range(25)]
+                    far = (_TAIL + width / 2) / radius
+                    turn = high + far if stop > high + tail else low - far
+                    words = _polar(corner, radius + (above if sin(turn) > 0 else -above), turn)
                     placed = PlacedDimension(one, label, base, self.plan.at(*words), right)
-                    yield around(words, width + 2 * GAP, height + 2 * GAP), placed, [arc]
+                    yield _turned(words, width, label.height(TEXT), turn), placed, [arc]
 
     def _distances(self) -> Iterator[float]:
         """Yield distances from a feature to its text [mm on paper], more of them on a larger sheet."""
@@ -394,20 +395,33 @@ class DimensionLayout:
             away += _STEP
 
     def _around(self, one: Dimension, label: Label, right: float) -> Iterator[Try]:
-        """Yield places for the text all around an oblique dimension."""
-        points = self._on_paper(one, right)
-        middle = (points[0][0] + points[1][0]) / 2, (points[0][1] + points[1][1]) / 2
+        """Yield places for the text all around an oblique dimension, clear of its own line."""
+        (x, y), (u, v) = sorted(self._on_paper(one, right))
+        size = dist((x, y), (u, v)) or 1.0
+        way = (u - x) / size, (v - y) / size
+        middle = (x + u) / 2 + ASIDE * way[1], (y + v) / 2 - ASIDE * way[0]
+        half = size / 2 + _TAIL
+        ends = [c + side * half * w for side in (-1, 1) for c, w in zip(middle, way, strict=True)]
+        own = np.array([ends, [x, y, u, v]])
         width, height = label.width(TEXT), label.height(TEXT)
         for away in self._distances():
             for turn in range(90, 450, 15):
                 x = middle[0] + (away + width / 2) * cos(radians(turn))
                 y = middle[1] + (away + height / 2) * sin(radians(turn))
-                placed = PlacedDimension(one, label, self.plan.at(*middle), self.plan.at(x, y), right)
-                yield around((x, y), width + 1.0, height + 1.0), placed, [[middle, (x, y)]]
+                box = around((x, y), width + 1.0, height + 1.0)
+                if not crossed(own, box, GAP).any():
+                    placed = PlacedDimension(one, label, self.plan.at(*middle), self.plan.at(x, y), right)
+                    yield box, placed, [[middle, (x, y)]]
 
 
 def _polar(corner: Point, radius: float, turn: float) -> Point:
     return corner[0] + radius * cos(turn), corner[1] + radius * sin(turn)
+
+
+def _turned(centre: Point, width: float, height: float, turn: float) -> Rectangle:
+    """Return the rectangle about words that stand on an arc, in a direction from its centre [rad]."""
+    level, upright = abs(sin(turn)), abs(cos(turn))
+    return around(centre, width * level + height * upright, width * upright + height * level)
 
 
 def _crossings(low: float, high: float, others: Sequence[float]) -> int:

@@ -10,6 +10,7 @@ from cad.drafting.measures import Measure
 from cad.drafting.parameter_match import Dimension
 from cad.tolerances import deviations, number_of
 
+TEXT = 3.5  # height of letters [mm on paper]
 SMALL = 0.7  # deviations are of so many times the height of the number
 _EXACT = 1e-9  # [mm]
 _LED = ("circle", "arc", "aligned")

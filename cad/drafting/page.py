@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import sqrt
+from math import atan2, degrees, dist, pi, remainder, sqrt
 from typing import Any
 
 from ezdxf import units
@@ -13,7 +13,8 @@ from ezdxf.filemanagement import new
 
 from cad.drafting.breaks import zigzag
 from cad.drafting.curves import Curve, Point
-from cad.drafting.dimension_layout import EXTENSION, GAP, TEXT, PlacedDimension
+from cad.drafting.dimension_layout import ASIDE, EXTENSION, GAP, PlacedDimension
+from cad.drafting.labels import TEXT
 from cad.drafting.plan import Plan
 from cad.drafting.symbols import Symbol, arrow
 from cad.drafting.views import View
@@ -144,7 +145,7 @@ class Page:
                     self._line_under(placed, along)
                 return drawn
             case "aligned":
-                drawn = self.space.add_aligned_dim(*sorted(points), -4 / self.plan.scale, **style)
+                drawn = self.space.add_aligned_dim(*sorted(points), -ASIDE / self.plan.scale, **style)
                 drawn.dimension.dxf.text_rotation = 0.0
                 drawn.set_location(placed.words, leader=True)
                 return drawn
@@ -154,9 +155,12 @@ class Page:
                 )
             case "arc":
                 return self.space.add_radius_dim(points[0], radius=measure.value, location=base, **level)
-        drawn = self.space.add_angular_dim_3p(base, *_counter_clockwise(points), **style)
-        if placed.words is not None:
-            drawn.set_location(placed.words)
+        if placed.words is None:
+            return self.space.add_angular_dim_3p(base, *_counter_clockwise(points), **style)
+        free: Any = {**style, "override": {"dimtmove": 2}}  # its words do not move the arc
+        drawn = self.space.add_angular_dim_3p(base, *_counter_clockwise(points), **free)
+        drawn.set_location(placed.words)
+        self._arc_under(placed, points)
         return drawn
 
     def _led(self, dimension: Any, placed: PlacedDimension) -> None:
@@ -192,6 +196,18 @@ class Page:
         place = placed.ends[0][1 - along]
         span = (ends[1], middle + half) if middle > ends[1] else (middle - half, ends[0])
         self.line([(place, at) if along else (at, place) for at in span], "DIMENSIONS")
+
+    def _arc_under(self, placed: PlacedDimension, points: Sequence[Point]) -> None:
+        """Extend the arc of an angle below its text, from the nearer leg."""
+        assert placed.words is not None
+        corner = points[0]
+        radius = dist(corner, placed.base)
+        at, *legs = (atan2(y - corner[1], x - corner[0]) for x, y in (placed.words, *points[1:]))
+        half = placed.label.width(TEXT) / 2 / self.plan.scale / radius
+        offsets = [remainder(leg - at, 2 * pi) for leg in legs]  # from the text to each leg
+        nearer = min(offsets, key=abs)
+        start, stop = (at - half, at + nearer) if nearer > 0 else (at + nearer, at + half)
+        self.space.add_arc(corner, radius, degrees(start), degrees(stop), dxfattribs={"layer": "DIMENSIONS"})
 
     def symbol(self, symbol: Symbol, layer: str = "SYMBOLS") -> None:
         """Draw a symbol on the paper."""

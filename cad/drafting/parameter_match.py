@@ -112,7 +112,7 @@ def _kind(measure: Measure) -> tuple[str, str, str]:
 def _fitting(size: Size, measures: Sequence[Measure]) -> list[Measure]:
     """Return the measures taken on the faces of a size, in order of preference."""
     sorts = _SORTS[size.kind]
-    shown = [m for m in measures if m.sort in sorts and _same(m.value, size) and _is_on(m, size)]
+    shown = [m for m in measures if m.sort in sorts and _same(m.value, size) and is_on(m, size)]
     return sorted(shown, key=lambda m: (sorts.index(m.sort), m.place != "section", m.form == "circle"))
 
 
@@ -120,7 +120,7 @@ def _same(one: float, other: float) -> bool:
     return isclose(one, other, rel_tol=_PRECISION, abs_tol=_PRECISION)
 
 
-def _is_on(measure: Measure, size: Size) -> bool:
+def is_on(measure: Measure, size: Size) -> bool:
     """Return whether a measure is taken on the faces of a size.
 
     A measure from an axis has no second faces; the faces of the size are then about that axis. Those of a

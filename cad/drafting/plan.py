@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from cad.drafting.curves import Point
 from cad.drafting.formats import FORMATS, Format
+from cad.drafting.labels import TEXT, label_of
 from cad.drafting.lanes import Lanes
 from cad.drafting.parameter_match import Dimension
 from cad.drafting.views import View
@@ -24,6 +25,7 @@ _EMPTY, _REDUCED = 4.0, 0.5
 
 _BELOW = 1.8  # of the room above views that have others below them, from below to the middle
 _ROOM = 24.0  # around and between views, beside the dimensions
+_LEADER = 10.0  # from a view to the words at the end of a leader [mm on paper]
 SCALES = [f * 10.0**n for n in range(3, -5, -1) for f in (5, 2, 1)]
 """The scales of ISO 5455, the largest first."""
 
@@ -76,6 +78,8 @@ def plans(
     (end_left, end_low), (end_right, end_high) = end.box
     across, bottom, top = right - left + end_right - end_left, min(low, end_low), max(high, end_high)
     sides = [n * LANE for n in lanes.counts]
+    between = max((_LEADER + label_of(one).width(TEXT) for one in lanes.local), default=0.0)
+    sides[1] += max(between - _ROOM, 0.0)
     taken = 3 * _ROOM + sides[0] + sides[1] + sides[2], 2 * _ROOM + sides[3] + sides[4]
 
     def share(format: Format, scale: float) -> float:

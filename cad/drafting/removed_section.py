@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
+from math import cos, dist, radians, sin
 
 import numpy as np
 from cadquery import Location, Vector
@@ -20,14 +21,14 @@ from cadquery import Location, Vector
 from cad.drafting.curves import Point
 from cad.drafting.declaration import DrawingDeclaration
 from cad.drafting.definition import Definition
-from cad.drafting.dimension_layout import TEXT, DimensionLayout, NoRoom, PlacedDimension
-from cad.drafting.labels import label_of
+from cad.drafting.dimension_layout import DimensionLayout, NoRoom, PlacedDimension
+from cad.drafting.labels import TEXT, label_of
 from cad.drafting.lanes import Lane
 from cad.drafting.letter_width import width_of
 from cad.drafting.marks import LETTERS, section_label
 from cad.drafting.measures import Form, Measure, on
 from cad.drafting.page import Page
-from cad.drafting.parameter_match import Dimension, length_of, matched
+from cad.drafting.parameter_match import Dimension, is_on, length_of, matched
 from cad.drafting.plan import LANE, Plan
 from cad.drafting.room import Rectangle, Room
 from cad.drafting.section import CLEAR, Cut, Frame, curve_of, cut_of, faces_across
@@ -39,6 +40,7 @@ from cad.surfaces import Face, PartSurfaces, Surface, Y, Z
 _MARGIN = 12.0  # about a section, beside its lanes [mm on paper]
 _AT_ONCE = 200  # places whose room is looked up at once
 _STEP = 4.0  # between places that are tried [mm on paper]
+_SLANT = radians(45)  # of a leader to a circle, between the centre lines
 _LABEL = 14.0  # of a section's label above it [mm on paper]
 
 
@@ -66,6 +68,9 @@ class RemovedSection:
         sign = self.view.frame.up.dot(Z)
         for measure in (one.measure for one in self.dimensions if not one.is_reference):
             points = measure.points
+            if measure.form == "circle" and not self.stations:
+                definition.add(measure)
+                continue
             if measure.form == "up" and not self.stations:
                 points = tuple((y * sign, 0.0) for _, y in points)
                 definition.add(replace(measure, form="across", points=points))
@@ -108,9 +113,11 @@ def _removed(
     view = section_view(part, body, Y, height, frame)
     if not view.edges:
         return None
-    wanted = {name: parameters[name] for name in shows if name in parameters}
+    circles = [*_circles(view, seen[body.name])]
+    drilled = [name for name, size in declared.sizes.items() if any(is_on(one, size) for one in circles)]
+    wanted = {name: parameters[name] for name in (*shows, *drilled) if name in parameters}
     leaning = [*_leaning(view, seen[body.name], height)]
-    shown = [*_measures(view, seen[body.name], leaning)]
+    shown = [*_measures(view, seen[body.name], leaning), *circles]
     dimensions, _ = matched(wanted, declared.sizes, shown, declared.limits)
     planes = on(*(plane for _, plane in leaning))
     return RemovedSection(letter, view, height, tuple(dimensions), leaning=planes) if dimensions else None
@@ -132,6 +139,20 @@ def _leaning(view: View, seen: PartSurfaces, height: float) -> Iterator[tuple[fl
         if abs(plane.direction.dot(Z)) < CLEAR < min(abs(right), abs(up)):
             at = (plane.point.dot(plane.direction) - up * height) / right
             yield from ((place, plane) for place in places if abs(place - at) < CLEAR)
+
+
+def _circles(view: View, seen: PartSurfaces) -> Iterator[Measure]:
+    """Yield the diameters of drillings along y that the section cuts: only there they are circles.
+
+    Beside the shank, the extension lines of such a drilling would lead through the ends of the bar.
+    """
+    rounds = [curve.arc for curve in view.visible if curve.arc is not None and curve.arc.is_whole]
+    for cylinder in (one for one in seen.cylinders if one.along(Y)):
+        x, y = view.frame.flat(cylinder.point)
+        radius = cylinder.diameter / 2
+        if any(dist(one.centre, (x, y)) + abs(one.radius - radius) < CLEAR for one in rounds):
+            tip = x + radius * cos(_SLANT), y + radius * sin(_SLANT)
+            yield Measure("diameter", cylinder.diameter, "section", "circle", ((x, y), tip), 1, on(cylinder))
 
 
 def _measures(view: View, seen: PartSurfaces, leaning: Sequence[tuple[float, Surface]]) -> Iterator[Measure]:

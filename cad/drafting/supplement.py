@@ -55,6 +55,7 @@ class Supplement:
         for hole in self.definition.features.holes:
             yield from self._axis(hole)
         yield from self._turns()
+        yield from self._whole_length()
         yield from self._levels("along")
 
     def _own(self) -> Iterator[Measure]:
@@ -106,6 +107,12 @@ class Supplement:
                 return
             pairs = groups if direction == "along" else others  # nothing is on the axis along the shaft
             yield self._between(*(self._mirrored(pairs) or self._pair(direction, placed, others)))
+
+    def _whole_length(self) -> Iterator[Measure]:
+        """Yield the overall length if it is loose: the smaller lengths beside it then close no chain."""
+        ends = sorted(one for one in self.definition.needed if one[0] == "along")
+        if len(ends) > 1 and not self.definition.joined(ends[0], ends[-1]):
+            yield self._level(ends[0][1], ends[-1][1])
 
     def _mirrored(self, others: Sequence[Sequence[Station]]) -> tuple[Station, Station] | None:
         """Return the widest pair of stations that are symmetric about a centre line and not yet located."""

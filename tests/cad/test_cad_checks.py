@@ -9,7 +9,7 @@ from bare_shells import BUSH
 from cadquery import func
 
 from cad.catalogue import models
-from cad.checks import check_bodies, check_box, check_dimensions
+from cad.checks import check_bodies, check_box, check_dimensions, dimensions_of
 from cad.errors import GeometryError
 from cad.header import Header
 from cad.inspect import look_at, measure
@@ -73,7 +73,7 @@ def test_shape_of_another_size_names_the_dimension(shell: PlainBearing) -> None:
     wider = bush(width="24.00001 mm")
     bodies = read_step(write_step(wider.build(), Header(shell.id, 1, {}, "")))
     with pytest.raises(GeometryError) as caught:
-        check_dimensions(shell, look_at(bodies))
+        check_dimensions(shell, dimensions_of(shell, look_at(bodies)))
     assert caught.value.code == "dimension"
     assert caught.value.parameters == ("width",)
     assert "24 mm" in caught.value.detail
@@ -83,7 +83,7 @@ def test_no_surface_to_read_from(shell: PlainBearing) -> None:
     block = Part("full_back", func.box(1, 1, 1), 1.0)
     bodies = read_step(write_step([block], Header(shell.id, 1, {}, "")))
     with pytest.raises(GeometryError, match="does not show"):
-        check_dimensions(shell, look_at(bodies))
+        check_dimensions(shell, dimensions_of(shell, look_at(bodies)))
 
 
 @pytest.mark.parametrize("which", ["drawn", "wanted"])

@@ -144,3 +144,14 @@ def test_a_grid_of_holes_has_one_pitch_with_a_count_in_each_direction() -> None:
     texts = sorted(label_of(one).text.replace("<>", f"{one.measure.value:g}") for one in plate.dimensions)
     assert texts == ["10", "100", "12×8", "2×15", "3×20", "80"]
     assert faults(plate) == []
+
+
+@pytest.mark.slow
+def test_the_overall_length_is_a_dimension_where_the_middle_of_a_groove_halves_it() -> None:
+    """Width 20 and the groove's middle at 10, not 10 + 10 with the width in brackets."""
+    model = models().get("ball_bearing", 1)
+    step = regenerate_class(model, as_text(model.from_quantities(model.example))).step
+    whole = read_step(step)
+    ring = content_of(bodies_of("dxf#outer_ring", whole), read_header(step), whole)
+    lengths = [one for one in ring.dimensions if one.measure.sort == "length"]
+    assert sorted((one.measure.value, one.is_reference) for one in lengths) == [(10, False), (20, False)]

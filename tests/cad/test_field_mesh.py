@@ -33,7 +33,8 @@ def shaft():
 
 @pytest.fixture(scope="module")
 def drawn(shaft):
-    return write_glb([closed_mesh(Body("shaft", shaft.solid(), (0.5, 0.5, 0.5), (_here(),)))])
+    body = Body("shaft", shaft.solid(), (0.5, 0.5, 0.5), (_here(),))
+    return write_glb([closed_mesh(body)], "model", {("shaft", 0): ("pin_diameter",)})
 
 
 def _here():
@@ -106,7 +107,7 @@ def test_a_glb_has_the_colours_and_the_rest_of_its_file(drawn):
     assert np.array_equal(again.triangles, glb.triangles)
     assert int.from_bytes(written[8:12], "little") == len(written)
     assert again.about["buffers"][0]["byteLength"] == len(again.binary)
-    accessor = again.about["accessors"][again.drawn["attributes"]["COLOR_0"]]
+    accessor = again.about["accessors"][again.attributes["COLOR_0"]]
     assert (accessor["count"], accessor["type"]) == (len(glb.points), "VEC3")
     assert again.about["nodes"][0]["extras"] == {
         "field": "height", "unit": "mm", "low": 0.0, "high": field.high,

@@ -1,13 +1,17 @@
 """No leader crosses a dimension line or a foreign view; no words overlap, with tolerances or without."""
 
-from math import hypot
+from itertools import pairwise
+from math import dist, hypot
 
 import numpy as np
 import pytest
 from seeds import seeded
 from slow_models import DRAWN, quick_for
 
+from cad.catalogue import models
 from cad.drafting.content import declared_of
+from cad.drafting.dimension_layout import GAP
+from cad.drafting.labels import TEXT
 from cad.drafting.room import overlap
 from cad.drafting.sheet import laid_out
 from cad.header import read_header
@@ -17,7 +21,7 @@ from cad.step import read_step
 
 
 def laid(model: type[CadModel], share: float):
-    """The layout of the example's sheet, a share of its sizes with random limits."""
+    """The content and layout of the example's sheet, a share of its sizes with random limits."""
     rng = np.random.default_rng(seeded(3702))
     texts = as_text(model.from_quantities(model.example))
     for name in model.toleranced:
@@ -26,7 +30,7 @@ def laid(model: type[CadModel], share: float):
     step = regenerate_class(model, texts).step
     bodies, header = read_step(step), read_header(step)
     seen, declared = declared_of(bodies, header)
-    return laid_out(bodies, seen, header, declared)[1]
+    return laid_out(bodies, seen, header, declared)
 
 
 def cross(one, other) -> bool:
@@ -59,7 +63,7 @@ def sides(box):
 @pytest.mark.parametrize("share", [0.4, pytest.param(1.0, marks=pytest.mark.slow)])
 @quick_for(*DRAWN)
 def test_leaders_keep_off_dimension_lines_and_foreign_views(model: type[CadModel], share: float) -> None:
-    sheet = laid(model, share)
+    _, sheet = laid(model, share)
     lines = [placed.ends for placed in sheet.placed if placed.ends]
     for leader in sheet.room.leaders:
         assert not [line for line in lines if cross(leader, line)], leader
@@ -69,3 +73,49 @@ def test_leaders_keep_off_dimension_lines_and_foreign_views(model: type[CadModel
     words = sheet.room.words
     overlapping = [(a, b) for n, a in enumerate(words) for b in words[:n] if overlap(a, b, -0.2)]
     assert overlapping == []
+
+
+@pytest.fixture(scope="module")
+def rod():
+    """The sheet of a rod whose sizes all have tolerances: it has the longest words beside the most arcs."""
+    return laid(models().get("connecting_rod", 1), 1.0)
+
+
+def one_of(sheet, name: str):
+    """The placed dimension of a parameter."""
+    (placed,) = [placed for placed in sheet.placed if placed.dimension.name == name]
+    return placed
+
+
+@pytest.mark.slow
+def test_the_leader_of_a_fillet_crosses_no_outline(rod) -> None:
+    content, sheet = rod
+    plan, placed = sheet.page.plan, one_of(sheet, "big_end_fillet")
+    outlines = [
+        (plan.paper(a, plan.beside), plan.paper(b, plan.beside))
+        for curve in content.end.visible
+        for a, b in pairwise(curve.points)
+    ]
+    assert not [line for line in outlines if cross(placed.leader[:2], line)]
+
+
+@pytest.mark.slow
+def test_a_drilling_along_a_bar_is_a_circle_in_the_section_across_it(rod) -> None:
+    content, sheet = rod
+    (section,) = content.removed
+    assert "oil_drilling_diameter" in section.names
+    assert one_of(sheet, "oil_drilling_diameter").dimension.measure.form == "circle"
+    assert content.missing() == []
+
+
+@pytest.mark.slow
+def test_the_words_of_a_narrow_angle_stand_on_its_arc(rod) -> None:
+    _, sheet = rod
+    plan, placed = sheet.page.plan, one_of(sheet, "shank_taper")
+    corner, one, other = placed.dimension.measure.points
+    shifted = corner[0] + placed.right, corner[1]
+    apart = abs(dist(placed.words, shifted) - dist(placed.base, shifted)) * plan.scale
+    assert apart == pytest.approx(GAP + TEXT / 2)  # the words nearly touch the line
+    half = dist(one, other) * plan.scale / 2
+    beyond = abs(placed.words[0] - shifted[0]) * plan.scale - half
+    assert 0 < beyond < placed.label.width(TEXT) / 2 + 10  # and begin soon after a leg

@@ -35,11 +35,11 @@ def glb(data):
         flat = np.frombuffer(binary, dtype, accessor["count"] * width, view["byteOffset"])
         return flat.reshape(-1, width)
 
-    drawn = (one["primitives"][0] for one in content["meshes"])
-    triangles = [
-        read(p["attributes"]["POSITION"], "<f4", 3)[read(p["indices"], "<u4", 1).ravel()].reshape(-1, 3, 3)
-        for p in drawn
-    ]
+    def corners(p):
+        points = read(p["attributes"]["POSITION"], "<f4", 3)
+        return points[read(p["indices"], "<u4", 1).ravel()].reshape(-1, 3, 3)
+
+    triangles = [np.concatenate([*map(corners, one["primitives"])]) for one in content["meshes"]]
     return content, triangles
 
 

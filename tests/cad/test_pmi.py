@@ -199,11 +199,15 @@ def test_property_limits_are_read_back_exactly_by_a_second_reader(files):
     assert len(files) == 10
 
 
+STRAIGHT = {"nose_fillet": "0 mm"}
+"""A nose as thick as the journal has no shoulder that a fillet could take."""
+
+
 @pytest.mark.sampled(1)
 @pytest.mark.parametrize("nose", ["35 mm", "55 mm"])  # 55: as thick as the journal, so without a shoulder
 def test_lengths_that_repeat_along_a_shaft_are_stated_at_each_place(nose):
     cls = models().get("crankshaft", 1)
-    texts = as_text(cls.from_quantities({**TWO_THROWS, "nose_diameter": nose}))
+    texts = as_text(cls.from_quantities({**TWO_THROWS, **STRAIGHT, "nose_diameter": nose}))
     limits = {
         "journal_length": (26.0, -0.1, 0.0),
         "pin_length": (32.0, 0.0, 0.052),
@@ -492,7 +496,7 @@ def test_two_dimensions_of_one_size_are_stated_on_the_faces_of_each():
 @pytest.mark.slow
 def test_the_nose_of_a_shaft_is_not_its_journal_where_both_are_as_thick():
     cls = models().get("crankshaft", 1)
-    texts = as_text(cls.from_quantities({**TWO_THROWS, "nose_diameter": "55 mm"}))
+    texts = as_text(cls.from_quantities({**TWO_THROWS, **STRAIGHT, "nose_diameter": "55 mm"}))
     texts["journal_diameter"] += " g6"
     both = {**texts, "nose_diameter": "55 mm h6"}
     one, two = (list(File(regenerate_class(cls, t).step).dimensions()) for t in (texts, both))

@@ -9,13 +9,23 @@ export function readGlb(buffer) {
   const about = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 20, length)));
   const read = (index) => accessor(about, buffer, 28 + length, index);
   const nodes = about.nodes[0].children.map((child) => about.nodes[child]);
-  return about.meshes.map(({ primitives: [drawn] }, index) => {
+  return about.meshes.map(({ primitives }, index) => {
     const places = nodes.filter((node) => node.mesh === index).map((node) => node.matrix);
-    const colour = about.materials[drawn.material].pbrMetallicRoughness.baseColorFactor;
-    const mesh = placed(read(drawn.attributes.POSITION), read(drawn.attributes.NORMAL), read(drawn.indices), places);
-    const painted = drawn.attributes.COLOR_0 === undefined ? undefined : cornerColours(read(drawn.attributes.COLOR_0));
-    return { ...mesh, colour: screenColour(colour), painted };
+    const { attributes, material } = primitives[0]; // all primitives of a body share its corners
+    const colour = about.materials[material].pbrMetallicRoughness.baseColorFactor;
+    const corners = primitives.flatMap(({ indices }) => Array.from(read(indices)));
+    const points = read(attributes.POSITION), mesh = placed(points, read(attributes.NORMAL), corners, places);
+    const painted = attributes.COLOR_0 === undefined ? undefined : cornerColours(read(attributes.COLOR_0));
+    return { ...mesh, colour: screenColour(colour), painted, marks: marksOf(primitives, read, points.length / 3) };
   });
+}
+
+// Return the parameters that each corner of a body carries, as the extras of its primitives name them.
+function marksOf(primitives, read, count) {
+  const marks = new Array(count).fill([]);
+  for (const { extras, indices } of primitives)
+    for (const corner of extras ? read(indices) : []) marks[corner] = extras.parameters;
+  return marks;
 }
 
 function accessor(about, buffer, start, index) {

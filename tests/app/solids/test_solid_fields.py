@@ -111,7 +111,7 @@ def test_the_file_has_the_use_at_one_fillet_of_each_throw(http, listed):
     answer = http.get(listed["life.load_use"]["glb"])
     assert answer.headers["content-type"] == "model/gltf-binary"
     glb = Glb(answer.content)
-    accessor = glb.drawn["attributes"]["COLOR_0"]
+    accessor = glb.attributes["COLOR_0"]
     colours = glb._read(accessor, np.float32, 3)
     grey = np.isclose(colours, np.array([0.74, 0.76, 0.79]) ** 2.2, atol=1e-3).all(axis=1)
     painted = glb.points[~grey]
