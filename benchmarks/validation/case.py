@@ -46,13 +46,14 @@ class Case:
 
     @property
     def compared(self) -> list[Column]:
-        """Return the columns that this case compares."""
-        return [c for c in self.reference.compared if not self.columns or c.name in self.columns]
+        """Return the columns that this case compares: those with a published number in its rows."""
+        wanted = [c for c in self.reference.compared if not self.columns or c.name in self.columns]
+        return [column for column in wanted if any(row[column.name] for row in self.selected)]
 
     def calculate(self) -> Numbers:
-        """Return our values of the compared columns, each with six digits."""
+        """Return our values of the compared columns, each with nine digits."""
         found = self.ours(self.selected)
-        return {column.name: [float(f"{x:.6g}") for x in found[column.name]] for column in self.compared}
+        return {column.name: [float(f"{x:.9g}") for x in found[column.name]] for column in self.compared}
 
 
 def by_row(ours: Callable[[dict[str, float]], Mapping[str, float]]) -> Callable[[Sequence[Row]], Numbers]:
