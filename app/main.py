@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from fastapi import FastAPI
 from fastapi_offline import FastAPIOffline
 
+from app.answers.routes import router as requirements
 from app.approvals.routes import router as approvals
 from app.assembly import assemble
 from app.calculations.routes.curves import router as curves
@@ -97,6 +98,7 @@ ROUTERS = (
     revisions,
     decisions,
     solving,
+    requirements,
     tolerances,
     labels,
     comparisons,

@@ -11,6 +11,8 @@ from typing import Annotated
 from fastapi import Depends, Header, Query, Request
 from fastapi.concurrency import run_in_threadpool
 
+from app.answers.schemas import DesignAnswer
+from app.answers.service import AnswerQuestion
 from app.api.event_streams import Still, always
 from app.api.responses import Threads
 from app.api.services import Services
@@ -78,6 +80,7 @@ TheStore = Annotated[Artifacts, Depends(_part("store"))]
 TheJobs = Annotated[Jobs, Depends(_part("jobs"))]
 TheThreads = Annotated[Threads, Depends(_part("threads"))]
 TheDesigns = Annotated[Designs, Depends(_part("designs"))]
+TheAnswers = Annotated[Questions[AnswerQuestion, DesignAnswer], Depends(_part("answers"))]
 TheLabelling = Annotated[LabelService, Depends(_part("labelling"))]
 TheStudies = Annotated[Studies, Depends(_part("studies"))]
 TheImports = Annotated[Imports, Depends(_part("imports"))]

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypedDict
 
+from app.answers.schemas import DesignAnswer
+from app.answers.service import AnswerQuestion
 from app.api.responses import Threads
 from app.approvals.comments import Comments
 from app.approvals.service import ApprovalService
@@ -75,6 +77,7 @@ class Services:
     threads: Threads
     evaluations: Questions[Question, Pieces]
     designs: Designs
+    answers: Questions[AnswerQuestion, DesignAnswer]
     labelling: LabelService
     previews: Questions[PreviewRequest, Preview]
     decisions: Questions[decisions_of.DecisionQuestion, Decision]
