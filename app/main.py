@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from fastapi import FastAPI
 from fastapi_offline import FastAPIOffline
 
+from app.answers.routes import router as requirements
 from app.approvals.routes import router as approvals
 from app.assembly import assemble
 from app.calculations.routes.curves import router as curves
@@ -56,6 +57,7 @@ from app.reports.routes import router as reports
 from app.schemas.problems import PROBLEM_CONTENT
 from app.settings import Settings
 from app.settings.hosts import Hosts
+from app.signing.routes import router as stamp_keys
 from app.solids.routes.analyses import router as analyses
 from app.solids.routes.models import router as models
 from app.studies.routes.studies import router as studies
@@ -96,6 +98,7 @@ ROUTERS = (
     revisions,
     decisions,
     solving,
+    requirements,
     tolerances,
     labels,
     comparisons,
@@ -117,6 +120,7 @@ ROUTERS = (
     principals,
     approvals,
     audit,
+    stamp_keys,
 )
 """The routers are tried in this order; the most frequently used ones come first: `evaluate`, then saves.
 Reports precede variants, because `…/variants/report.pdf` is not a variant. Imports of models precede

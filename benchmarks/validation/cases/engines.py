@@ -37,6 +37,23 @@ def slider_crank(row: dict[str, float]) -> dict[str, float]:
             "torque": float(abs(load.torque[here].to("N*m").magnitude))}  # fmt: skip
 
 
+def radial_of_three(row: dict[str, float]) -> dict[str, float]:
+    """Return the balance weight at 3.5 in [lb] and the secondary force [lbf] of a radial engine."""
+    engine = get("engine", 1)(
+        speed="1500 rpm", strokes=2, crank_angle_step="30 deg", orders=[1, 2], gas_cycle="none",
+        firing_order=[1, 2, 3], pin_angles={"value": [0, 0, 0], "unit": "deg"}, throws=[1, 1, 1],
+        bank_angles={"value": [0, 120, 240], "unit": "deg"}, crank_radius="2.5 inch", rod_length="9 inch",
+        cylinder_positions={"value": [0, 0, 0], "unit": "mm"}, bore="100 mm", piston_mass="4 lb",
+        rod_mass="1e-6 kg", rod_centre="1 mm", crank_unbalance="0 kg*mm", harmonics="leading",
+    )  # fmt: skip
+    force = engine.order_force_forward.magnitude + engine.order_force_backward.magnitude
+    speed = 1500 * np.pi / 30
+    return {
+        "balance": float(force[0] / (speed**2 * 3.5 * 0.0254) / 0.45359237),
+        "secondary": float(force[1] / 4.4482216152605),
+    }
+
+
 def v16(rows: Sequence[Row]) -> Numbers:
     """Return couples and forces of the layouts of a V16 engine, largest along each axis.
 
@@ -116,6 +133,14 @@ ENGINES = (
         "flywheel 1",
         "printed example",
         by_template("flywheel", 1, "nine_cylinder_set.csv", **NINE_CYLINDERS),
+    ),
+    Case(
+        "bevan_14_12",
+        "Bevan, chapter 14, example 12: radial engine of three cylinders",
+        "bevan_1956_ch_14_ex_12.csv",
+        "engine 1",
+        "printed example",
+        by_row(radial_of_three),
     ),
     Case(
         "v16_balance",

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from benchmarks.validation.by_template import by_template
 from benchmarks.validation.case import Case, by_row
 from templates import get
 
-NOT_USED = {"fatigue_strength_coefficient": "900 MPa", "fatigue_strength_exponent": -0.09}
+NOT_USED: dict[str, Any] = {"fatigue_strength_coefficient": "900 MPa", "fatigue_strength_exponent": -0.09}
 """Basquin's line, which the safety factor for endless life does not use."""
 
 
 def reversed_bending(row: dict[str, float]) -> dict[str, float]:
     """Return the life under a reversed stress, by the line through the two strengths."""
+    strengths: dict[str, Any] = {name: f"{row[name]} MPa" for name in STRENGTHS}
     life = get("fatigue_life", 1)(
         force_1={"value": [1.0, 0.0, -1.0, 0.0], "unit": "kN"},
         stress_of_force_1={"value": [[row["stress"], 0, 0, 0, 0, 0]], "unit": "MPa/kN"},
-        **{f"{name}": f"{row[name]} MPa" for name in STRENGTHS},
-        surface="polished", reliability=0.5,
-    )  # fmt: skip
+        surface="polished",
+        reliability=0.5,
+        **strengths,
+    )
     return {"cycles": float(life.cycles.magnitude)}
 
 
