@@ -9,8 +9,9 @@ import json
 import pytest
 
 from benchmarks.validation.case import numbers
-from benchmarks.validation.cases import CASES, NOT_FOUND
+from benchmarks.validation.cases import CASES
 from benchmarks.validation.comparison import RESULTS, agrees, comparisons, kept
+from benchmarks.validation.gaps import NOT_FOUND
 from benchmarks.validation.page import PAGE, PICTURES, page, pictures
 from benchmarks.validation.reference import KEYS, Uncertainty
 from templates.door import built_in

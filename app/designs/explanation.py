@@ -13,6 +13,7 @@ from app.designs.errors import DesignError
 from app.designs.questions import calculated_revision, settled
 from app.designs.schemas.designs import Explanation
 from app.designs.sensitivities import SensitivityQuestion, sensitivities
+from app.pool.errors import StepDeferred
 from app.pool.questions import EXPLANATION, Kind, Reply, json_answer, json_form
 from app.presentation.units import System
 from app.storage.database import Database
@@ -34,7 +35,7 @@ class ExplanationQuestion:
 def explanation(
     asked: ExplanationQuestion, database: Database, catalogues: Catalogues
 ) -> Reply[ExplanationQuestion, Explanation]:
-    """Return the explanation, or the request to continue with if a step is deferred.
+    """Return the explanation, or the request to continue with if a step or a solid's slopes are deferred.
 
     Raises
     ------
@@ -44,7 +45,10 @@ def explanation(
     row, document, calculation = calculated_revision(asked, database, catalogues)
     if calculation.deferred:
         return Reply(None, replace(asked, revision=row.number))
-    return Reply(explained(document, calculation, catalogues, asked.name, asked.units))
+    try:
+        return Reply(explained(document, calculation, catalogues, asked.name, asked.units))
+    except StepDeferred:  # slopes of a solid
+        return Reply(None, replace(asked, revision=row.number))
 
 
 def explained(

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import math
+from collections.abc import Iterable
 
 from app.designs.analyses import is_table
 from app.designs.engine.calculation import Calculation
-from app.designs.engine.needs import Needs, is_member, needs
+from app.designs.engine.needs import is_member, needs
 from app.designs.engine.row_design import Targets
-from app.designs.network import Block, Cell, Graph
+from app.designs.network import Cell, Graph
 from app.reference import Reference
 from templates.core.errors import FaultyText
 
@@ -49,35 +50,26 @@ def _is_single(calculation: Calculation, cell: Cell) -> bool:
     return column is not None and isinstance(column.value, float)
 
 
-def through_solids(graph: Graph, wanted: Targets) -> Mapping[Reference, Block]:
-    """Return the cells that affect values through a solid, each with the model of one such solid.
-
-    A step is traced as a whole, because its calculation needs all its inputs.
-    """
-    cells: dict[Reference, Block] = {}
-    left, seen = [*_needs(graph, wanted).waiting], set[str]()
-    while left:
-        model = graph.blocks[left.pop().block]
-        if model.name not in seen:
-            seen.add(model.name)
-            behind = needs(graph, (cell.reference for cell in model.cells.values()), ())
-            cells = {cell.reference: model for cell in behind.cells} | cells
-            left += behind.waiting
-    return cells
-
-
 def measures_behind(calculation: Calculation, wanted: Targets) -> dict[Reference, float]:
-    """Return the known measurements of solids [SI] on which values depend, without tables."""
-    measures: dict[Reference, float] = {}
-    for reference in _needs(calculation.graph, wanted).waiting:
-        if is_table(reference):
+    """Return the measurements of solids [SI] on which values depend, also through other solids.
+
+    A measurement is NaN if its solid is not built or not analysed. Tables are left out.
+    """
+    graph, measures = calculation.graph, dict[Reference, float]()
+    left, seen = [*needs(graph, wanted.references, (), wanted.inside).waiting], set[Reference]()
+    while left:
+        if (reference := left.pop()) in seen:
             continue
-        try:
-            measures[reference] = float(calculation.value(reference))
-        except (FaultyText, KeyError):  # the solid is not built or not analysed
-            continue
+        seen.add(reference)
+        if not is_table(reference):
+            measures[reference] = _measure(calculation, reference)
+        cells = graph.blocks[reference.block].cells.values()
+        left += needs(graph, (cell.reference for cell in cells), ()).waiting
     return measures
 
 
-def _needs(graph: Graph, wanted: Targets) -> Needs:
-    return needs(graph, wanted.references, (), wanted.inside)
+def _measure(calculation: Calculation, reference: Reference) -> float:
+    try:
+        return float(calculation.value(reference))
+    except (FaultyText, KeyError):  # the solid is not built or not analysed
+        return math.nan

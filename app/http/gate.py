@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Awaitable, Callable
+from dataclasses import replace
 from typing import cast
 
 from fastapi import FastAPI, Request, Response
@@ -21,6 +22,7 @@ from app.http import access, guard
 from app.http.connections import AddressLimit
 from app.http.limits import AddressCrowded, BodyLimits, ServiceStopping
 from app.http.strict_requests import HttpError
+from app.http.uploads import UploadRoute
 from app.identity.errors import IdentityError
 from app.identity.principal import ACTING
 from app.observation.processor_time import METER, Meter, Metered
@@ -157,6 +159,7 @@ def install(
         inner: ASGIApp = ExceptionMiddleware(AsyncExitStackMiddleware(app.router), handlers)
         for layer in reversed(app.user_middleware):
             inner = layer.cls(inner, *layer.args, **layer.kwargs)
-        return Gate(inner, hosts, body, addresses, refuse, unexpected)
+        uploads = frozenset(one.path for one in app.routes if isinstance(one, UploadRoute))
+        return Gate(inner, hosts, replace(body, uploads=uploads), addresses, refuse, unexpected)
 
     app.build_middleware_stack = built  # type: ignore[method-assign]

@@ -51,9 +51,9 @@ class Case:
         return [column for column in wanted if any(row[column.name] for row in self.selected)]
 
     def calculate(self) -> Numbers:
-        """Return our values of the compared columns, each with six digits."""
+        """Return our values of the compared columns, each with nine digits."""
         found = self.ours(self.selected)
-        return {column.name: [float(f"{x:.6g}") for x in found[column.name]] for column in self.compared}
+        return {column.name: [float(f"{x:.9g}") for x in found[column.name]] for column in self.compared}
 
 
 def by_row(ours: Callable[[dict[str, float]], Mapping[str, float]]) -> Callable[[Sequence[Row]], Numbers]:

@@ -18,6 +18,18 @@ CLEARANCE = PSI * DIAMETER / 2
 SPLIT_10 = {"value": [[90, 10], [270, 10]], "unit": "deg"}
 SPLIT_20 = {"value": [[90, 20], [270, 20]], "unit": "deg"}
 
+CONSTANT_OIL: dict[str, Any] = {
+    "oil_inlet_temperature": "40 degC",
+    "oil_outlet_temperature": "40 degC",
+    "reference_temperature": "40 degC",
+    "reference_density": "1000 kg/m**3",
+    "temperature_1": "40 degC",
+    "kinematic_viscosity_1": "20 mm**2/s",
+    "temperature_2": "100 degC",
+    "kinematic_viscosity_2": "4 mm**2/s",
+}
+"""An oil of 20 mPa s at the temperature of the film, for `oil_film` 1."""
+
 
 def load_of(S: float, width_ratio: float, preload: float = 0.0) -> float:
     """Return the load [N] at a Sommerfeld number that refers to the clearance of machining."""
@@ -40,6 +52,38 @@ def film(
         preload=preload,
         **others,
     )
+
+
+def film_of_paper(S: float, width_ratio: float) -> Calculation:
+    """Return `oil_film` 1 of a bearing with this Sommerfeld number; its viscosity fits 20 mPa s."""
+    return get("oil_film", 1)(**_bearing(S, width_ratio), **CONSTANT_OIL)
+
+
+def film_under_constant_cycle(S: float, width_ratio: float) -> Calculation:
+    """Return `oil_film_cycle` 1, level `mobility`, under a constant load at this Sommerfeld number."""
+    common = _bearing(S, width_ratio)
+    load = -load_of(S, width_ratio)
+    turn = [15.0 * n for n in range(24)]
+    return get("oil_film_cycle", 1)(
+        level="mobility",
+        crank_angle={"value": turn, "unit": "deg"},
+        load_x={"value": [load] * 24, "unit": "N"},
+        load_y={"value": [0.0] * 24, "unit": "N"},
+        dynamic_viscosity=f"{VISCOSITY} Pa*s",
+        oil_supply="flooded_ends",
+        **{name: common[name] for name in common if name != "radial_load"},
+    )
+
+
+def _bearing(S: float, width_ratio: float) -> dict[str, Any]:
+    """Return load, sizes and speed of a plain bearing with this Sommerfeld number."""
+    return {
+        "radial_load": f"{load_of(S, width_ratio)!r} N",
+        "bearing_diameter": f"{DIAMETER} m",
+        "bearing_width": f"{width_ratio * DIAMETER!r} m",
+        "diametral_clearance": f"{PSI * DIAMETER!r} m",
+        "speed": f"{SPEED} rad/s",
+    }
 
 
 def value(calculation: Calculation, name: str, unit: str) -> float:

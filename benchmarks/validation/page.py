@@ -7,8 +7,9 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from benchmarks.validation.case import Case, Numbers
-from benchmarks.validation.cases import CASES, NOT_FOUND, NOT_OBTAINED
+from benchmarks.validation.cases import CASES
 from benchmarks.validation.comparison import Comparison, agrees, comparisons, farthest
+from benchmarks.validation.gaps import NOT_FOUND, NOT_OBTAINED
 from benchmarks.validation.plot import svg
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -22,7 +23,8 @@ HEAD = """\
 sources are in `tests/references`; each number was read in the source that its file names as *opened*.
 
 - **Case**: one published bearing, crank, engine or machine, at one condition or at the conditions of one
-  table. Rows of a table are one case, unless they are different bearings.
+  table. Rows of a table are one case, unless they are different bearings. A case that two templates calculate
+  counts once.
 - **Theirs ± uncertainty**: the published number, and what its print, its reading and its method leave open;
   the section of the case states the basis. For a measurement it is the reading, not the scatter of the
   test, unless the source states that scatter.
@@ -59,12 +61,13 @@ def write(results: Mapping[str, Numbers]) -> None:
 
 
 def _counts(done: list[tuple[Case, list[Comparison]]]) -> str:
+    published = {(case.file, *case.rows.values()) for case, _ in done}
+    sources = {case.reference.head["source"] for case, _ in done}
     kinds = Counter(case.kind for case, _ in done)
     agreed = sum(agrees(compared) for _, compared in done)
-    sources = len({case.reference.head["source"] for case, _ in done})
+    number = f"{len(published)} published cases from {len(sources)} sources, in {len(done)} comparisons"
     each = ", ".join(f"{count} × {kind}" for kind, count in sorted(kinds.items()))
-    verdicts = f"{agreed} agree, {len(done) - agreed} differ"
-    return f"**{len(done)} cases from {sources} sources ({each}): {verdicts}.**\n"
+    return f"**{number}: {agreed} agree, {len(done) - agreed} differ.** By kind: {each}.\n"
 
 
 def _summary(done: list[tuple[Case, list[Comparison]]]) -> Iterator[str]:
@@ -124,7 +127,7 @@ def _number(value: float, digits: int = 4) -> str:
 def _gaps() -> Iterator[str]:
     """Yield what was looked for without success."""
     yield "## Sources that were not obtained\n"
-    yield "These do not count.\n"
+    yield "These do not count; numbers could not be read in any copy that was at hand.\n"
     yield from (f"- {line}" for line in NOT_OBTAINED)
     yield ""
     if NOT_FOUND:

@@ -35,14 +35,14 @@ class Axis:
         return min(max(value, self.low), self.high)
 
     def ticks(self) -> list[float]:
-        """Return three to six round values."""
+        """Return three to seven round values."""
         if self.is_log:
             powers = range(floor(log10(self.low)), floor(log10(self.high)) + 1)
             each = [m * 10.0**n for n in powers for m in ((1,) if len(powers) > 3 else (1, 3))]
         else:
-            step = _round_step((self.high - self.low) / 4)
+            step = _round_step((self.high - self.low) / 5)
             first = floor(self.low / step)
-            each = [step * n for n in range(first, first + 8)]
+            each = [step * n for n in range(first, first + 9)]
         return [value for value in each if self.low <= value <= self.high]
 
 
@@ -52,8 +52,8 @@ def _round_step(step: float) -> float:
 
 
 def svg(case: Case, compared: list[Comparison]) -> str:
-    """Return the picture of a case: a curve over the abscissa, or the ratio of each quantity."""
-    lines = _curve(case, compared) if case.abscissa else _ratios(compared)
+    """Return the picture of a case: a curve over the abscissa, or the difference of each quantity."""
+    lines = _curve(case, compared) if case.abscissa else _differences(compared)
     head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" {STYLE}>'
     return "\n".join([head, *lines, *_legend(), "</svg>", ""])
 
@@ -111,22 +111,23 @@ def _label(case: Case, name: str) -> str:
     return column.words if column.unit in ("1", "") else f"{column.words} [{column.unit}]"
 
 
-def _ratios(compared: list[Comparison]) -> Iterator[str]:
-    """Yield ours over theirs at the worst place of each quantity, beside the uncertainty."""
-    rows = [_ratio(comparison) for comparison in compared if comparison.theirs[comparison.worst]]
-    spread = [1 + s * a for _, a, _ in rows for s in (-1, 1)] + [ratio for _, _, ratio in rows]
+def _differences(compared: list[Comparison]) -> Iterator[str]:
+    """Yield the difference at the worst place of each quantity, beside the uncertainty."""
+    rows = [_difference(comparison) for comparison in compared if comparison.theirs[comparison.worst]]
+    spread = [s * a for _, a, _ in rows for s in (-1, 1)] + [difference for _, _, difference in rows]
     x = Axis(spread, LEFT, WIDTH - RIGHT)
-    yield from _frame(x, "over the published value")
+    yield from _frame(x, "difference from the published value [%]")
     pitch = (HEIGHT - TOP - BOTTOM) / len(rows)
-    for n, (words, allowed, ratio) in enumerate(rows):
+    for n, (words, allowed, difference) in enumerate(rows):
         y = TOP + (n + 0.7) * pitch
         yield f'<text x="{LEFT + 4}" y="{y - 6:.1f}">{escape(words)}</text>'
-        yield _dot(x.at(1), y, x.at(1 - allowed), x.at(1 + allowed), False)
-        yield _cross(x.at(ratio), y)
+        yield _dot(x.at(0), y, x.at(-allowed), x.at(allowed), False)
+        yield _cross(x.at(difference), y)
 
 
-def _ratio(comparison: Comparison) -> tuple[str, float, float]:
-    """Return the words of a quantity, its relative uncertainty and ours over theirs at the worst place."""
+def _difference(comparison: Comparison) -> tuple[str, float, float]:
+    """Return the words of a quantity, its uncertainty and the difference at the worst place [%]."""
     n = comparison.worst
-    theirs = comparison.theirs[n]
-    return comparison.column.words, comparison.uncertainties[n] / abs(theirs), comparison.ours[n] / theirs
+    percent = 100 / abs(comparison.theirs[n])
+    difference = comparison.ours[n] - comparison.theirs[n]
+    return comparison.column.words, percent * comparison.uncertainties[n], percent * difference

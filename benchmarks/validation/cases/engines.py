@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from benchmarks.validation.by_template import by_template
-from benchmarks.validation.case import Case, by_row
-from benchmarks.validation.reference import FOLDER
+from benchmarks.validation.case import Case, Numbers, by_row
+from benchmarks.validation.reference import FOLDER, Row
 from templates import get
 
 NINE_CYLINDERS = json.loads((FOLDER / "nine_cylinder_set.json").read_text(encoding="utf-8"))["inputs"]
@@ -35,6 +37,78 @@ def slider_crank(row: dict[str, float]) -> dict[str, float]:
             "torque": float(abs(load.torque[here].to("N*m").magnitude))}  # fmt: skip
 
 
+def radial_of_three(row: dict[str, float]) -> dict[str, float]:
+    """Return the balance weight at 3.5 in [lb] and the secondary force [lbf] of a radial engine."""
+    engine = get("engine", 1)(
+        speed="1500 rpm", strokes=2, crank_angle_step="30 deg", orders=[1, 2], gas_cycle="none",
+        firing_order=[1, 2, 3], pin_angles={"value": [0, 0, 0], "unit": "deg"}, throws=[1, 1, 1],
+        bank_angles={"value": [0, 120, 240], "unit": "deg"}, crank_radius="2.5 inch", rod_length="9 inch",
+        cylinder_positions={"value": [0, 0, 0], "unit": "mm"}, bore="100 mm", piston_mass="4 lb",
+        rod_mass="1e-6 kg", rod_centre="1 mm", crank_unbalance="0 kg*mm", harmonics="leading",
+    )  # fmt: skip
+    force = engine.order_force_forward.magnitude + engine.order_force_backward.magnitude
+    speed = 1500 * np.pi / 30
+    return {
+        "balance": float(force[0] / (speed**2 * 3.5 * 0.0254) / 0.45359237),
+        "secondary": float(force[1] / 4.4482216152605),
+    }
+
+
+def v16(rows: Sequence[Row]) -> Numbers:
+    """Return couples and forces of the layouts of a V16 engine, largest along each axis.
+
+    Vertical forces have a horizontal moment, which the tool calls H; the template gives a couple the
+    direction of its forces.
+    """
+    found = [_balance_of_v16([float(angle) for angle in row["throws"].split()]) for row in rows]
+    return {name: [one[name] for one in found] for name in found[0]}
+
+
+def _balance_of_v16(throws: list[float]) -> dict[str, float]:
+    engine = _v16(throws)
+    couples, forces = _Axes(engine, "couple", "N*m"), _Axes(engine, "force", "N")
+    return {
+        "M_r": float(engine.rotating_couple.to("N*m").magnitude),
+        "M_1H": couples.along(0, 0), "M_1V": couples.along(0, 90), "F_2H": forces.along(1, 90),
+        "M_2H": couples.along(1, 0), "M_2V": couples.along(1, 90), "M_4H": couples.along(2, 0),
+    }  # fmt: skip
+
+
+def _v16(throws: list[float]) -> Any:
+    """Return `engine` 1 of a V16 engine with these throws [°]; half of a throw belongs to each cylinder."""
+    middles = [1120.0 - 320 * n for n in range(8)]
+    pins, banks = [angle % 360 for angle in throws for _ in range(2)], [45.0, -45.0] * 8
+    centres = [(bank - pin) % 360 for bank, pin in zip(banks, pins, strict=True)]
+    return get("engine", 1)(
+        speed="1500 rpm", strokes=2, crank_angle_step="30 deg", orders=[1, 2, 4], gas_cycle="none",
+        firing_order=[n + 1 for n in sorted(range(16), key=centres.__getitem__)],
+        pin_angles={"value": pins, "unit": "deg"}, bank_angles={"value": banks, "unit": "deg"},
+        throws=[n // 2 + 1 for n in range(16)], crank_radius="60 mm", rod_length="411.5 mm", bore="200 mm",
+        cylinder_positions={"value": [x + dx for x in middles for dx in (30, -30)], "unit": "mm"},
+        rod_mass="21.19 kg", rod_centre=f"{411.5 * 9.86 / 21.19} mm", piston_mass="11.93 kg",
+        crank_unbalance=f"{(8.66190878660935 * 60 + 2 * 14.45 * 17.3) / 2} kg*mm", web_unbalance="0 kg*mm",
+        web_positions={"value": [x + dx for x in middles for dx in (-90, 90)], "unit": "mm"},
+        counterweights=f"{17.15 * 136.4} kg*mm", harmonics="exact",
+    )  # fmt: skip
+
+
+class _Axes:
+    """Forces or couples of the orders of an engine, which turn on ellipses."""
+
+    def __init__(self, engine: Any, kind: str, unit: str) -> None:
+        self.forward, self.backward = (
+            getattr(engine, f"order_{kind}_{way}").to(unit).magnitude for way in ("forward", "backward")
+        )
+        self.direction = getattr(engine, f"order_{kind}_direction").to("rad").magnitude
+
+    def along(self, order: int, axis: float) -> float:
+        """Return the largest value along an axis [°] over the turn."""
+        angle = np.radians(axis) - self.direction[order]
+        longer = self.forward[order] + self.backward[order]
+        shorter = self.forward[order] - self.backward[order]
+        return float(np.hypot(longer * np.cos(angle), shorter * np.sin(angle)))
+
+
 ENGINES = (
     *(
         Case(
@@ -59,5 +133,21 @@ ENGINES = (
         "flywheel 1",
         "printed example",
         by_template("flywheel", 1, "nine_cylinder_set.csv", **NINE_CYLINDERS),
+    ),
+    Case(
+        "bevan_14_12",
+        "Bevan, chapter 14, example 12: radial engine of three cylinders",
+        "bevan_1956_ch_14_ex_12.csv",
+        "engine 1",
+        "printed example",
+        by_row(radial_of_three),
+    ),
+    Case(
+        "v16_balance",
+        "Balancing tool of miriam-innio: six cranks of a V16 engine",
+        "v16_balance_tool.csv",
+        "engine 1",
+        "other program",
+        v16,
     ),
 )

@@ -37,6 +37,14 @@ PADS = (
         by_template("journal_friction", 1, "petrov_mec_315.csv", radial_load="10 N"),
     ),
     Case(
+        "petrov_pump_handbook",
+        "Pump Handbook: friction of a concentric journal of 5 in",
+        "pump_handbook_petroff.csv",
+        "journal_friction 1",
+        "printed example",
+        by_template("journal_friction", 1, "pump_handbook_petroff.csv", radial_load="10 N"),
+    ),
+    Case(
         "skf_6309",
         "SKF: ball bearing 6309 under 10 kN",
         "skf_6309.csv",

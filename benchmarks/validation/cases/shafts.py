@@ -156,6 +156,14 @@ SHAFTS = (
         chain("bevan_1956_ch_15_ex_9.csv"),
     ),
     Case(
+        "honda_cbr600rr",
+        "Biedenkopf 2020: crankshaft of a Honda CBR600RR",
+        "honda_cbr600rr_crank.csv",
+        "torsional_vibration 1",
+        "other program",
+        chain("honda_cbr600rr_crank.csv"),
+    ),
+    Case(
         "punewale_frequency",
         "Punewale et al. 2015: frequency of a crankshaft",
         "punewale_2015_frequency.csv",
