@@ -65,7 +65,10 @@ def _conflict(solution: DesignAnswer) -> Iterator[Item]:
         text = f"{written.get(best.name, best.name)}: best {best.best.value:.6g} {best.best.unit}"
         yield Item(name="reachable", text=text)
     if one.relaxation is not None:
-        limits = (f"{name} {limit.value:.6g} {limit.unit}" for name, limit in one.relaxation.limits.items())
+        limits = (
+            f"{written.get(name, name)} -> {limit.value:.6g} {limit.unit}"
+            for name, limit in one.relaxation.limits.items()
+        )
         places = (f"{place} {_text(value)}" for place, value in one.relaxation.at.items())
         yield Item(name="relaxation", text=f"{'; '.join(limits)} at {'; '.join(places)}")
 

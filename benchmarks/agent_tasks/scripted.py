@@ -147,7 +147,8 @@ class Script:
         answer = await self.called("answer", arguments)
         numbers = {number["name"]: number for number in answer["numbers"]}
         if answer["summary"].startswith("infeasible"):
-            return {"outcome": "infeasible", "names": [item["text"] for item in answer["items"]]}
+            items = {item["name"]: item["text"] for item in answer["items"]}
+            return {"outcome": "infeasible", "names": items["conflict"].split("; ")}
         return {"outcome": "answered", **_shown(numbers[place])}
 
     def _required(self, use: Subject, need: str) -> str:
