@@ -120,8 +120,8 @@ def otto_cycle(row: dict[str, float]) -> dict[str, float]:
     cycle = get("combustion_cycle", 1)(
         bore="100 mm", stroke="100 mm", rod_length="200 mm", compression_ratio=ratio, inlet_closes="180 deg",
         exhaust_opens="540 deg", suction_pressure=f"{pressure} kPa", exhaust_pressure=f"{pressure} kPa",
-        heat_release=f"{row['heat'] * charge} kJ", combustion_start="-0.05 deg", combustion_duration="0.1 deg",
-        wiebe_efficiency_constant=12, ratio_of_specific_heats=row["ratio_of_specific_heats"],
+        heat_release=f"{row['heat'] * charge} kJ", combustion_start="-0.05 deg", wiebe_efficiency_constant=12,
+        combustion_duration="0.1 deg", ratio_of_specific_heats=row["ratio_of_specific_heats"],
     )  # fmt: skip
     names = ("peak_pressure", "closed_mean_effective_pressure")
     return {name: float(getattr(cycle, name).to("MPa").magnitude) for name in names}
