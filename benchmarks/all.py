@@ -1,6 +1,6 @@
 """Measure the costs of the program and compare with aims: `python -m benchmarks.all [films elements …]`.
 
-The arguments are kinds of work: films, elements, serving, shell. `python -m benchmarks.all kept` prints the
+The arguments are kinds of work: films, elements, serving, shell, answers. `python -m benchmarks.all kept` prints the
 stored table without measuring.
 
 Each kind of work runs in its own process, one after the other, with one BLAS thread. Times are processor
@@ -30,7 +30,7 @@ from benchmarks.speed.servers import commit, machine
 RESULTS = Path(__file__).parent / "results" / "all.json"
 PAGE = Path(__file__).parents[1] / "docs" / "costs.md"
 HEAD = "| work | measured | aim | | how |\n|---|---|---|---|---|"
-KINDS = ("shell", "serving", "films", "elements")
+KINDS = ("shell", "serving", "films", "elements", "answers")
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS")
 
 
