@@ -1,7 +1,7 @@
 """Measure the costs of the program and compare with aims: `python -m benchmarks.all [films elements …]`.
 
-The arguments are kinds of work: films, elements, serving, shell, answers. `python -m benchmarks.all kept` prints the
-stored table without measuring.
+The arguments are kinds of work: films, elements, serving, shell, answers. `python -m benchmarks.all kept`
+prints the stored table without measuring.
 
 Each kind of work runs in its own process, one after the other, with one BLAS thread. Times are processor
 times, because other work on the machine affects them least; wall times are marked. The whole run takes less
