@@ -61,6 +61,24 @@ class Evaluate(Arguments):
     change: Values = Field({}, description="merge patch of the design")
 
 
+class Answer(Arguments):
+    """A design, its free places and the requirements, as `POST /answer` takes them."""
+
+    design: Id | Values = Field(description="id, gallery name, or document")
+    free: Values = Field(
+        description="{'film.bearing_width': {'between': ['15 mm', '40 mm'], 'step': '1 mm'}}"
+    )
+    require: Annotated[list[Text], Field(max_length=50)] | SkipJsonSchema[None] = Field(
+        None, description="criteria, or 'film.minimum_film_thickness >= 3 um'"
+    )
+    targets: Values = {}
+    minimise: Text | SkipJsonSchema[None] = None
+    maximise: Text | SkipJsonSchema[None] = None
+    others: Values = Field({}, alias="with", description="values that replace those of the design")
+    set_aside: Annotated[list[Text], Field(max_length=10)] = []
+    tolerance: float | SkipJsonSchema[None] = None
+
+
 class Verify(Arguments):
     """A design whose criteria are decided at finer levels, or a STEP file."""
 

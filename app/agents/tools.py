@@ -9,7 +9,8 @@ from collections.abc import Awaitable, Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TypeVar
 
-from app.agents.arguments import Arguments, Evaluate, Explain, Find, Propose, Report, Verify
+from app.agents.answer import answer
+from app.agents.arguments import Answer, Arguments, Evaluate, Explain, Find, Propose, Report, Verify
 from app.agents.calls import Call
 from app.agents.errors import Refused
 from app.agents.explain import explain, version_of
@@ -241,6 +242,9 @@ TOOLS = {
         "Calculate a template, or a design with changes; saves nothing. Write units: '25 kN'.",
         Evaluate,
         evaluate,
+    ),
+    "answer": _tool(
+        "Values of free places that meet requirements, or what conflicts; saves nothing.", Answer, answer
     ),
     "verify": _tool("Decide criteria of a design at finer levels, or check a STEP file.", Verify, verify),
     "report": _tool("Verdict of a revision; links to report, drawing and STEP.", Report, report),

@@ -19,7 +19,13 @@ def literals_behind(calculation: Calculation, starts: Iterable[Reference]) -> li
 
     Quantities that act through a measurement of a solid are included.
     """
-    graph, cells = calculation.graph, list[Cell]()
+    cells = cells_behind(calculation.graph, starts)
+    return [cell for cell in cells if not cell.relations and _is_single(calculation, cell)]
+
+
+def cells_behind(graph: Graph, starts: Iterable[Reference]) -> list[Cell]:
+    """Return the cells on which values depend, also through a measurement of a solid."""
+    cells = list[Cell]()
     left, seen = [*starts][::-1], set[Reference]()
     while left:
         reference = left.pop()
@@ -31,7 +37,7 @@ def literals_behind(calculation: Calculation, starts: Iterable[Reference]) -> li
             left += cell.uses.values()
         elif reference.block in graph.blocks:
             left += _inputs(graph, reference)
-    return [cell for cell in cells if not cell.relations and _is_single(calculation, cell)]
+    return cells
 
 
 def _inputs(graph: Graph, reference: Reference) -> list[Reference]:
@@ -53,19 +59,24 @@ def _is_single(calculation: Calculation, cell: Cell) -> bool:
 def measures_behind(calculation: Calculation, wanted: Targets) -> dict[Reference, float]:
     """Return the measurements of solids [SI] on which values depend, also through other solids.
 
-    A measurement is NaN if its solid is not built or not analysed. Tables are left out.
+    A measurement is NaN if its solid is not built or not analysed.
     """
-    graph, measures = calculation.graph, dict[Reference, float]()
+    return {measure: _measure(calculation, measure) for measure in solid_measures(calculation.graph, wanted)}
+
+
+def solid_measures(graph: Graph, wanted: Targets) -> list[Reference]:
+    """Return the measurements of solids on which values depend, without tables, also through other solids."""
+    measures = dict[Reference, None]()
     left, seen = [*needs(graph, wanted.references, (), wanted.inside).waiting], set[Reference]()
     while left:
         if (reference := left.pop()) in seen:
             continue
         seen.add(reference)
         if not is_table(reference):
-            measures[reference] = _measure(calculation, reference)
+            measures[reference] = None
         cells = graph.blocks[reference.block].cells.values()
         left += needs(graph, (cell.reference for cell in cells), ()).waiting
-    return measures
+    return list(measures)
 
 
 def _measure(calculation: Calculation, reference: Reference) -> float:

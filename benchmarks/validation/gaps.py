@@ -16,8 +16,10 @@ NOT_OBTAINED: tuple[str, ...] = (
 )
 """Sources that could not be opened."""
 
+NO_MODEL = "CAD models: no published part with all its sizes and its mass or inertia was found."
+"""What no case covers beside templates."""
+
 NOT_FOUND: dict[str, str] = {
-    "combustion_cycle 1": "programs for heat release by Wiebe's law, but none that prints its results",
     "crank_stiffness 1": "no published throw with its sizes and its measured or calculated stiffness",
     "crankshaft_strength 1": "no worked example of the rule",
     "cycle_heat_balance 1": "no measured temperature over an engine cycle with all inputs",

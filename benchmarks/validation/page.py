@@ -9,7 +9,7 @@ from pathlib import Path
 from benchmarks.validation.case import Case, Numbers
 from benchmarks.validation.cases import CASES
 from benchmarks.validation.comparison import Comparison, agrees, comparisons, farthest
-from benchmarks.validation.gaps import NOT_FOUND, NOT_OBTAINED
+from benchmarks.validation.gaps import NO_MODEL, NOT_FOUND, NOT_OBTAINED
 from benchmarks.validation.plot import svg
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -130,7 +130,7 @@ def _gaps() -> Iterator[str]:
     yield "These do not count; numbers could not be read in any copy that was at hand.\n"
     yield from (f"- {line}" for line in NOT_OBTAINED)
     yield ""
-    if NOT_FOUND:
-        yield "## Templates without a published case\n"
-        yield from (f"- `{name}`: {reason}" for name, reason in NOT_FOUND.items())
-        yield ""
+    yield "## Templates and models without a published case\n"
+    yield from (f"- `{name}`: {reason}" for name, reason in NOT_FOUND.items())
+    yield f"- {NO_MODEL}"
+    yield ""

@@ -109,6 +109,24 @@ class _Axes:
         return float(np.hypot(longer * np.cos(angle), shorter * np.sin(angle)))
 
 
+def otto_cycle(row: dict[str, float]) -> dict[str, float]:
+    """Return the pressures [MPa] of a cycle whose heat comes at the top, in a tenth of a degree.
+
+    The cylinder's size does not enter: the heat is that of the charge of any cylinder.
+    """
+    ratio, pressure = row["compression_ratio"], row["suction_pressure"]
+    volume = np.pi / 4 * 0.1**3 * ratio / (ratio - 1)
+    charge = pressure * volume / (row["gas_constant"] * row["temperature"])
+    cycle = get("combustion_cycle", 1)(
+        bore="100 mm", stroke="100 mm", rod_length="200 mm", compression_ratio=ratio, inlet_closes="180 deg",
+        exhaust_opens="540 deg", suction_pressure=f"{pressure} kPa", exhaust_pressure=f"{pressure} kPa",
+        heat_release=f"{row['heat'] * charge} kJ", combustion_start="-0.05 deg", wiebe_efficiency_constant=12,
+        combustion_duration="0.1 deg", ratio_of_specific_heats=row["ratio_of_specific_heats"],
+    )  # fmt: skip
+    names = ("peak_pressure", "closed_mean_effective_pressure")
+    return {name: float(getattr(cycle, name).to("MPa").magnitude) for name in names}
+
+
 ENGINES = (
     *(
         Case(
@@ -149,5 +167,13 @@ ENGINES = (
         "engine 1",
         "other program",
         v16,
+    ),
+    Case(
+        "nag_13_1",
+        "Nag, example 13.1: Otto cycle at compression ratio 8",
+        "nag_ex_13_1.csv",
+        "combustion_cycle 1",
+        "printed example",
+        by_row(otto_cycle),
     ),
 )
