@@ -30,6 +30,7 @@ def test_the_front_page_links_to_the_empty_form(http):
     assert "Requirement" not in page
 
 
+@pytest.mark.slow
 def test_the_bearing_of_the_paper_is_found_and_saved(http):
     page = shown(http)
     assert page.status_code == 200
@@ -47,7 +48,7 @@ def test_the_bearing_of_the_paper_is_found_and_saved(http):
 @pytest.mark.parametrize(
     ("typed", "words"),
     [
-        ({"film": "40 um"}, "cannot be met"),
+        pytest.param({"film": "40 um"}, "cannot be met", marks=pytest.mark.slow),
         ({"width_low": "40 mm", "width_high": "15 mm"}, "first bound must be below"),
         ({"film": "3"}, "unit"),
     ],
