@@ -73,7 +73,7 @@ ABOUT = {
     "tests/app/client/test_client.py": ("app/*client/*.py", "app/reports/*.py", "app/*schemas*.py"),
     "tests/app/designs/test_conditional_designs_http.py": ("app/designs/*.py", "app/reports/*.py"),
     "tests/app/test_crank_gallery.py": (
-        *("app/solids/*.py", "app/studies/*.py", "app/web/gallery*.py", "cad/analysis/*.py"),
+        *("app/solids/*.py", "app/studies/*.py", "app/designs/gallery/*.py", "cad/analysis/*.py"),
         *("templates/stiffness/*.py", "templates/physics/fatigue/*.py", "cad/models/crank_throw_v1.py"),
     ),
     "tests/app/test_crash.py": (
@@ -96,7 +96,7 @@ ABOUT = {
     "tests/app/designs/test_designs_http.py": ("app/*jobs/*.py", "app/*workers/*.py"),
     "tests/app/cli/test_embedded_start.py": ("app/*.py", "pyproject.toml"),
     "tests/app/test_engine_gallery.py": (
-        *("app/web/gallery*.py", "app/designs/*.py", "templates/bearing_load/*.py"),
+        *("app/designs/gallery/*.py", "app/designs/*.py", "templates/bearing_load/*.py"),
         *("templates/physics/engine/*.py", "cad/cranks/*.py", "cad/models/crankshaft_v1.py"),
     ),
     "tests/app/jobs/test_events_resumed.py": ("app/*event*.py", "app/api/event_streams.py"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from contextlib import ExitStack, closing
 from typing import TYPE_CHECKING
 
+from app.answers.service import AnswerService
 from app.api.responses import Threads
 from app.api.services import QuestionServices, Services
 from app.approvals.comments import Comments
@@ -43,6 +44,7 @@ from app.reports.service import Reports
 from app.retention.service import Retention
 from app.settings import Settings
 from app.settings.machines import LOCAL
+from app.signing.keys import opened_keys
 from app.solids.analyses import ANALYSIS, Analyses, ModelAnalysis
 from app.solids.analysis_process import AnalysisRunner
 from app.solids.builds import Builds
@@ -79,6 +81,7 @@ from app.studies.service import Studies
 from app.studies.variant_design import DesignFactory
 
 NETWORK = (
+    "app.answers.tasks",
     "app.designs.engine.design_engine",
     "app.impact.process",
     "app.studies.plan",
@@ -108,11 +111,16 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
     stack.callback(programs.close)
     builds = Builds(database, store, programs)
     analysing = AnalysisRunner(
-        database, store, Limits(settings.analysis_deadline, settings.analysis_memory_mb)
+        database,
+        store,
+        Limits(settings.analysis_deadline, settings.analysis_memory_mb, "CRANKWRIGHT_ANALYSIS_MEMORY_MB"),
     )
     register_jobs(jobs, builds, analysing, catalogues, calculations, calculation_cache)
-    questions = assemble_questions(database, catalogues, store, jobs, calculations.steps)
     designs = Designs(database, jobs, catalogues, calculation_cache)
+    models = Models(database, store, jobs, catalogues)
+    about = database, catalogues, store, jobs, calculations.steps
+    questions = assemble_questions(*about)
+    answers = question_service(AnswerService(designs, models, jobs).kind, *about)
     solids = SolidPool(database, builds, analysing, settings.workers)
     of_studies = StudyServices(
         database, store, catalogues, calculations.pool, jobs, calculations.steps, solids
@@ -125,7 +133,6 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
     jobs.register(MODEL_IMPORT, model_imports)
     jobs.start({**calculations.lanes, **LANES})
     stack.callback(jobs.stop)
-    models = Models(database, store, jobs, catalogues)
     analyses = Analyses(database, store, jobs)
     return Services(
         settings=settings,
@@ -138,6 +145,7 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
         steps=calculations.steps,
         threads=Threads(),
         designs=designs,
+        answers=answers,
         labelling=LabelService(database),
         studies=studies,
         worksheets=worksheets,
@@ -149,7 +157,11 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
         approving=ApprovalService(database, store),
         comments=Comments(database),
         reports=Reports(database, store, models, catalogues, settings.owner),
-        press=Press(workers.here, Limits(settings.job_deadline, settings.job_memory_mb), settings.workers),
+        press=Press(
+            workers.here,
+            Limits(settings.job_deadline, settings.job_memory_mb, "CRANKWRIGHT_JOB_MEMORY_MB"),
+            settings.workers,
+        ),
         streams=Streams(settings.streams, settings.streams_per_client),
         readiness=readiness.Readiness(
             {
@@ -158,6 +170,7 @@ def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None)
                 "calculations": readiness.Processes(calculations.pool),
             }
         ),
+        stamp_keys=opened_keys(settings),
         **questions,
     )
 
@@ -251,7 +264,7 @@ def find_catalogues(settings: Settings, worker: Worker) -> Catalogues:
     """
     if not settings.template_folders:
         return Catalogues(find_templates(()), find_models())
-    limits = Limits(settings.template_seconds, settings.job_memory_mb)
+    limits = Limits(settings.template_seconds, settings.job_memory_mb, "CRANKWRIGHT_JOB_MEMORY_MB")
     check = CheckInProcess(worker, limits)
     if settings.engine != LOCAL:
         return TeamCatalogues(settings.template_folders, check)

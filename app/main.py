@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from fastapi import FastAPI
 from fastapi_offline import FastAPIOffline
 
+from app.answers.routes import router as requirements
 from app.approvals.routes import router as approvals
 from app.assembly import assemble
 from app.calculations.routes.curves import router as curves
@@ -44,16 +45,19 @@ from app.http.limits import BodyLimits
 from app.http.openapi import describe_interface, operation_id
 from app.http.pace import Pace
 from app.http.server import on_stop_signal
+from app.http.uploads import UploadFolder
 from app.identity.routes.audit import router as audit
 from app.identity.routes.principals import router as principals
 from app.impact.routes import router as impact
 from app.imported_models.routes import router as imported_models
+from app.imported_models.routes import uploads as model_uploads
 from app.jobs.routes import router as jobs
 from app.observation.routes import router as health
 from app.reports.routes import router as reports
 from app.schemas.problems import PROBLEM_CONTENT
 from app.settings import Settings
 from app.settings.hosts import Hosts
+from app.signing.routes import router as stamp_keys
 from app.solids.routes.analyses import router as analyses
 from app.solids.routes.models import router as models
 from app.studies.routes.studies import router as studies
@@ -94,6 +98,7 @@ ROUTERS = (
     revisions,
     decisions,
     solving,
+    requirements,
     tolerances,
     labels,
     comparisons,
@@ -107,6 +112,7 @@ ROUTERS = (
     design_events,
     study_tables,
     studies,
+    model_uploads,
     imported_models,
     models,
     analyses,
@@ -114,6 +120,7 @@ ROUTERS = (
     principals,
     approvals,
     audit,
+    stamp_keys,
 )
 """The routers are tried in this order; the most frequently used ones come first: `evaluate`, then saves.
 Reports precede variants, because `…/variants/report.pdf` is not a variant. Imports of models precede
@@ -132,6 +139,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
                 stack.callback(traces.close)  # closed last, when all other parts have ended their spans
             services = assemble(chosen, stack, traces)
             app.state.services, app.state.pace = services, Pace()
+            app.state.uploads = UploadFolder(chosen.data / "uploads", chosen.minimum_free_mb)
             stack.enter_context(on_stop_signal(services.jobs.drain))
             stack.enter_context(spared_by_collections())
             yield
@@ -156,7 +164,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     openapi.install(app)
     pages.install(app)
     access.install(app)
-    body = BodyLimits(chosen.body_limit, chosen.body_seconds, chosen.slowest_rate)
+    body = BodyLimits(chosen.body_limit, chosen.body_seconds, chosen.slowest_rate, chosen.upload_limit)
     addresses = AddressLimit(chosen.connections_per_address, chosen.trusted_proxies)
     gate.install(app, Hosts(chosen.allowed_hosts, chosen.host), body, addresses, problems.refusal)
     if traces is not None:

@@ -31,8 +31,8 @@ HEAD = """# Licences
 This page lists the licences of everything that is installed with the service, its tests and its
 documentation, as each package states them. `python -m benchmarks.supply_chain` generates it from the
 installed distributions, together with a CycloneDX bill of materials, `docs/sbom.cdx.json`. The last column
-names the extra (`study`, `team` or `traces`) that needs a distribution, or *development* for tests and
-documentation; the service runs without these distributions. The owner has not chosen a licence for
+names the extra (`agents`, `study`, `team` or `traces`) that needs a distribution, or *development* for
+tests and documentation; the service runs without these distributions. The owner has not chosen a licence for
 Crankwright itself yet.
 
 | name | version | licence | home | |
@@ -113,7 +113,7 @@ EXTRAS = {
 }  # dependencies of uvicorn[standard]
 
 
-OFFERED = ("study", "team", "traces")  # extras that a user may install
+OFFERED = ("agents", "study", "team", "traces")  # extras that a user may install
 
 
 def needed(components: dict[str, Component], extra: str | None = None) -> set[str]:

@@ -7,19 +7,21 @@ they name parameters, never a design or a relation. A STEP file of an older reci
 
 from __future__ import annotations
 
+import json
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
+from cad.part21 import entities
 from cad.step import Body
 from cad.surfaces import Face, Size
 
 FaceMarks = Mapping[Face, tuple[str, ...]]
 """The parameters that a face carries, by part and number of the face."""
 
-_SHELL = re.compile(r"^#\d+ = (?:CLOSED|OPEN)_SHELL\('[^']*',\(([^)]*)\)", re.MULTILINE)
-_FACE = re.compile(r"^(#\d+) = ADVANCED_FACE\('([^']*)'", re.MULTILINE)
-_REFERENCE = re.compile(r"#\d+")
+_SHELL = re.compile(rb" = (?:CLOSED|OPEN)_SHELL\('[^']*',\(([^)]*)\)")
+_FACE = re.compile(rb" = ADVANCED_FACE\('([^']*)'")
+_REFERENCE = re.compile(rb"#\d+")
 
 
 def face_marks(dimensions: Mapping[str, object]) -> FaceMarks:
@@ -44,24 +46,43 @@ def marked(step: bytes, bodies: Sequence[Body], marks: FaceMarks) -> bytes:
     `bodies` are those read from the file. If the kernel has split or joined faces on reading, the faces of
     the file are not those of the bodies, and the file stays unmarked.
     """
-    text = step.decode("latin-1")
-    names = {entity: " ".join(marks.get(face, ())) for entity, face in _entities(text, bodies)}
-    written = _FACE.sub(lambda one: f"{one[1]} = ADVANCED_FACE('{names.get(one[1], one[2])}'", text)
-    return written.encode("latin-1")
+    of_entity = _faces(step, bodies)
+    pieces, done = [], 0
+    for face in entities(step, _FACE):
+        names = marks.get(of_entity.get(_number(step, face), ("", -1)), ())
+        if names:
+            pieces += [step[done : face.start(1)], " ".join(names).encode()]
+            done = face.end(1)
+    return b"".join([*pieces, step[done:]])
 
 
 def read_marks(step: bytes, bodies: Sequence[Body]) -> FaceMarks:
     """Return the marks of a STEP file, from which the bodies were read."""
-    text = step.decode("latin-1")
-    names = {one[1]: one[2] for one in _FACE.finditer(text) if one[2]}
-    return {face: tuple(names[entity].split()) for entity, face in _entities(text, bodies) if entity in names}
+    of_entity = _faces(step, bodies)
+    named = ((_number(step, face), face[1].decode().split()) for face in entities(step, _FACE) if face[1])
+    return {of_entity[entity]: tuple(names) for entity, names in named if entity in of_entity}
 
 
-def _entities(text: str, bodies: Iterable[Body]) -> list[tuple[str, Face]]:
-    """Return the faces of a file with their entities; none if their number differs from that of the bodies.
+def _number(step: bytes, entity: re.Match[bytes]) -> bytes:
+    """Return the number of an entity, `#12`."""
+    return step[step.rfind(b"\n", 0, entity.start()) + 1 : entity.start()]
+
+
+def _faces(step: bytes, bodies: Iterable[Body]) -> dict[bytes, Face]:
+    """Return the faces of a file by their entities; none if their number differs from that of the bodies.
 
     Shells follow each other as the bodies do, and a shell lists its faces in the order of the solid.
     """
-    entities = [entity for shell in _SHELL.finditer(text) for entity in _REFERENCE.findall(shell[1])]
+    listed = [number for shell in entities(step, _SHELL) for number in _REFERENCE.findall(shell[1])]
     faces = [(body.name, number) for body in bodies for number in range(len(body.shape.Faces()))]
-    return list(zip(entities, faces, strict=True)) if len(entities) == len(faces) else []
+    return dict(zip(listed, faces, strict=True)) if len(listed) == len(faces) else {}
+
+
+def parameters_in(file: bytes, kind: str) -> list[str]:
+    """Return the parameters that faces of a STEP or GLB file carry, by name."""
+    if kind == "glb":
+        about = json.loads(file[20 : 20 + int.from_bytes(file[12:16], "little")])
+        primitives = [drawn for mesh in about["meshes"] for drawn in mesh["primitives"]]
+        extras = [drawn["extras"] for drawn in primitives if "extras" in drawn]
+        return sorted({name for one in extras for name in one["parameters"]})
+    return sorted({name for face in entities(file, _FACE) for name in face[1].decode().split()})

@@ -7,9 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from cadquery import Location
+from numpy.typing import NDArray
 from OCP.Bnd import Bnd_Box
 from OCP.BRepBndLib import BRepBndLib
 from OCP.BRepCheck import BRepCheck_Analyzer
@@ -34,6 +36,11 @@ MEASURES = {
 Inertia is the tensor about the centre of mass: inertia_xy = -∫ x y dm. The polar inertia is that about the
 model's z axis, on which its shaft turns: ∫ (x² + y²) dm. Low and high are the bounding box.
 """
+
+Number = float | complex
+Numbers = NDArray[np.inexact[Any]]
+Standing = tuple[Number, Numbers, Numbers]
+"""Mass [kg], centre [mm] and inertia about the centre [kg·mm²] of a body at its position."""
 
 _PAIRS = [(i, j) for i in range(3) for j in range(i, 3)]
 _PRECISION = 1e-6  # [mm]
@@ -85,17 +92,28 @@ def summarise(
         for body, one in zip(bodies, measured, strict=True)
         for place in body.places
     ]
+    volume = sum(one.volume * len(body.places) for body, one in zip(bodies, measured, strict=True))
+    return {
+        **{name: float(value.real) for name, value in mass_measures(volume, standing).items()},
+        **{f"low_{axis}": value for axis, value in zip("xyz", box.low, strict=True)},
+        **{f"high_{axis}": value for axis, value in zip("xyz", box.high, strict=True)},
+    }
+
+
+def mass_measures(volume: Number, standing: Sequence[Standing]) -> dict[str, Number]:
+    """Return the volume [mm³] with mass, centre and inertia of all bodies, in the units of `MEASURES`.
+
+    Numbers may be complex: their imaginary parts are then changes of the first order.
+    """
     mass = sum(weight for weight, _, _ in standing)
     centre = np.sum([weight * point for weight, point, _ in standing], axis=0) / mass
     inertia = np.sum([spin + _steiner(weight, point - centre) for weight, point, spin in standing], axis=0)
     return {
         "mass": mass,
-        "volume": sum(one.volume * len(body.places) for body, one in zip(bodies, measured, strict=True)),
-        **{f"centre_{axis}": float(value) for axis, value in zip("xyz", centre, strict=True)},
-        **{f"inertia_{'xyz'[i]}{'xyz'[j]}": float(inertia[i, j]) * 1e-6 for i, j in _PAIRS},
-        "polar_inertia": float((inertia + _steiner(mass, centre))[2, 2]) * 1e-6,
-        **{f"low_{axis}": value for axis, value in zip("xyz", box.low, strict=True)},
-        **{f"high_{axis}": value for axis, value in zip("xyz", box.high, strict=True)},
+        "volume": volume,
+        **{f"centre_{axis}": value for axis, value in zip("xyz", centre, strict=True)},
+        **{f"inertia_{'xyz'[i]}{'xyz'[j]}": inertia[i, j] * 1e-6 for i, j in _PAIRS},
+        "polar_inertia": (inertia + _steiner(mass, centre))[2, 2] * 1e-6,
     }
 
 
@@ -129,7 +147,7 @@ def _rounded(corner: tuple[float, float, float]) -> tuple[float, float, float]:
     return x, y, z
 
 
-def _stand(one: BodyMeasures, place: Location, density: float) -> tuple[float, Array, Array]:
+def _stand(one: BodyMeasures, place: Location, density: float) -> Standing:
     """Return mass [kg], centre [mm] and inertia about the centre [kg·mm²] of a body at a position.
 
     The density is in kg/mm³.
@@ -138,9 +156,9 @@ def _stand(one: BodyMeasures, place: Location, density: float) -> tuple[float, A
     return density * one.volume, turn @ one.centre + shift, density * turn @ one.inertia @ turn.T
 
 
-def _steiner(mass: float, arm: Array) -> Array:
+def _steiner(mass: Number, arm: Numbers) -> Numbers:
     """Return the inertia that a mass at the end of an arm adds (parallel axis theorem)."""
-    return mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+    return np.asarray(mass * (arm @ arm * np.eye(3) - np.outer(arm, arm)))
 
 
 def _widened(box: Bnd_Box) -> Bnd_Box:

@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from typing import AnyStr
 
 _BLANK, _WORD = re.compile(r"\s+"), re.compile(r"[A-Za-z0-9_]+")
+_NUMBER, _NUMBER_OF_BYTES = re.compile(r"#\d+"), re.compile(rb"#\d+")
 _ESCAPED = re.compile(r"''|\\\\|\\X(2|4)\\((?:[0-9A-F]{4})*)\\X0\\")
 _ENDING = re.compile(r"'(?=\s*[,)])")
 _QUOTE = "\\X2\\0027\\X0\\"
@@ -53,6 +55,18 @@ def _unescaped(escape: re.Match[str]) -> str:
         return escape[0][0]
     encoding = "utf-16-be" if escape[1] == "2" else "utf-32-be"
     return bytes.fromhex(escape[2]).decode(encoding, "replace")
+
+
+def entities(text: AnyStr, pattern: re.Pattern[AnyStr]) -> Iterator[re.Match[AnyStr]]:
+    """Yield the matches of a pattern that are entities, each at the beginning of a line.
+
+    The pattern begins with ` = KEYWORD`: a search for these letters takes a tenth of the time of one for
+    `^#[0-9]+`.
+    """
+    line_end, number = ("\n", _NUMBER) if isinstance(text, str) else (b"\n", _NUMBER_OF_BYTES)
+    for match in pattern.finditer(text):
+        if number.fullmatch(text, text.rfind(line_end, 0, match.start()) + 1, match.start()):
+            yield match
 
 
 def description(text: str) -> list[str]:

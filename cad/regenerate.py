@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from OCP.Standard import Standard_OutOfMemory
 
 from cad.catalogue import models
 from cad.checks import (
@@ -313,8 +314,8 @@ def _kernel(model: CadModel) -> Iterator[None]:
         raise GeometryError(
             error.code, f"{model.id}: {error.detail}", error.parameters or model.inputs
         ) from None
-    except MemoryError:
-        raise  # the caller handles the limit
+    except (MemoryError, Standard_OutOfMemory):
+        raise MemoryError from None  # the caller handles the limit
     except Exception as error:
         detail = f"the kernel failed on {model.id}: {type(error).__name__}: {error}"
         raise GeometryError("kernel", detail, model.inputs) from error

@@ -17,13 +17,14 @@ from cad.drafting.letter_width import clipped, width_of
 from cad.drafting.title import STAMPED as STAMPED_FIELDS
 from cad.drafting.title import STAMPED_OF_PART
 from cad.file_names import name, plain_name, stem, wide_stem
-from cad.part21 import end_of_string, plain, quoted
+from cad.part21 import end_of_string, entities, plain, quoted
+from cad.signed_file import without_claims
 
 _STRING = r"'(?:[^']|'')*'"
 _FILE = re.compile(rf"FILE_NAME\(({_STRING}\s*,\s*{_STRING})")
-_PRODUCT = re.compile(rf"^#\d+ = PRODUCT\(\s*({_STRING}\s*,\s*({_STRING})\s*,\s*({_STRING}))", re.MULTILINE)
+_PRODUCT = re.compile(rf" = PRODUCT\(\s*({_STRING}\s*,\s*({_STRING})\s*,\s*({_STRING}))")
 _COMMA = re.compile(r"\s*,\s*")
-_VERSION = re.compile(rf"^#\d+ = PRODUCT_DEFINITION_FORMATION\(\s*({_STRING})", re.MULTILINE)
+_VERSION = re.compile(rf" = PRODUCT_DEFINITION_FORMATION\(\s*({_STRING})")
 
 MARK = "stamp:"
 """Prefix in the extended data of a DXF text; the line of the title block follows it."""
@@ -65,6 +66,8 @@ class Stamp:
     mark: str = ""
     part: str = ""
     rounded: str = ""  # parameters that the design rounds: calculated and chosen values
+    id: str = ""  # of the design
+    build: str = ""  # its key
 
     @property
     def called(self) -> str:
@@ -164,7 +167,7 @@ def is_copy(file: bytes, original: bytes) -> bool:
 
     The time is linear in both lengths.
     """
-    text, source = file.decode("latin-1"), original.decode("latin-1")
+    text, source = without_claims(file).decode("latin-1"), original.decode("latin-1")
     place, done = 0, 0
     for hole in _holes(source):
         if not text.startswith(source[done : hole.start], place):
@@ -187,10 +190,10 @@ def _holes(text: str) -> list[_Hole]:
     """Return the positions to fill in, in text order: file and time, products, product versions."""
     file = _FILE.search(text)
     holes = [_Hole(*file.span(1), 2, _file)] if file else []
-    for number, product in enumerate(_PRODUCT.finditer(text)):
+    for number, product in enumerate(entities(text, _PRODUCT)):
         write = partial(_part, plain(product[2])) if number else partial(_root, plain(product[3]))
         holes.append(_Hole(*product.span(1), 3, write))
-    holes += (_Hole(*version.span(1), 1, _version) for version in _VERSION.finditer(text))
+    holes += (_Hole(*version.span(1), 1, _version) for version in entities(text, _VERSION))
     return sorted(holes, key=lambda hole: hole.start)
 
 
@@ -215,6 +218,7 @@ def _root(volume: str, stamp: Stamp) -> tuple[str, ...]:
         f"model {stamp.model}",
         stamp.material,
         "" if stamp.mass is None else f"mass {stamp.mass:.6g} kg",
+        f"crankwright:{stamp.id}:{stamp.revision}" if stamp.id else "",  # what another program may keep
     )
     return stamp.part_number, f"{name(stamp.design)}_{stamp.called}", ", ".join(filter(None, described))
 

@@ -15,6 +15,7 @@ from OCP.IFSelect import IFSelect_ReturnStatus
 from OCP.Interface import Interface_Static
 from OCP.Message import Message
 from OCP.Quantity import Quantity_Color, Quantity_TypeOfColor
+from OCP.Standard import Standard_OutOfMemory
 from OCP.STEPCAFControl import STEPCAFControl_Controller, STEPCAFControl_Reader, STEPCAFControl_Writer
 from OCP.STEPControl import STEPControl_StepModelType
 from OCP.TCollection import TCollection_ExtendedString
@@ -100,14 +101,23 @@ def read_step(step: bytes) -> tuple[Body, ...]:
     ------
     UnreadableStep
         If the bytes are not a STEP file or contain no shape.
+    MemoryError
+        If the kernel has not enough memory.
     """
+    try:
+        return tuple(_bodies(_read_document(step)))
+    except Standard_OutOfMemory:
+        raise MemoryError from None
+
+
+def _read_document(step: bytes) -> TDocStd_Document:
     reader = STEPCAFControl_Reader()
     document = _new_document()
     if reader.ReadStream("model.step", io.BytesIO(step)) != IFSelect_ReturnStatus.IFSelect_RetDone:
         raise UnreadableStep("this is not a STEP file")
     if not reader.Transfer(document):
         raise UnreadableStep("this STEP file contains no shape")
-    return tuple(_bodies(document))
+    return document
 
 
 def rigid(place: Location) -> tuple[Array, Array]:

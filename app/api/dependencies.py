@@ -9,7 +9,10 @@ from collections.abc import AsyncIterator, Awaitable, Callable
 from typing import Annotated
 
 from fastapi import Depends, Header, Query, Request
+from fastapi.concurrency import run_in_threadpool
 
+from app.answers.schemas import DesignAnswer
+from app.answers.service import AnswerQuestion
 from app.api.event_streams import Still, always
 from app.api.responses import Threads
 from app.api.services import Services
@@ -41,6 +44,7 @@ from app.presentation.units import System
 from app.reports.paper import Press
 from app.reports.service import Reports
 from app.settings import Settings
+from app.signing.keys import StampKeys
 from app.solids.analyses import Analyses
 from app.solids.models import Models
 from app.solids.repair import ArtifactRepair
@@ -76,6 +80,7 @@ TheStore = Annotated[Artifacts, Depends(_part("store"))]
 TheJobs = Annotated[Jobs, Depends(_part("jobs"))]
 TheThreads = Annotated[Threads, Depends(_part("threads"))]
 TheDesigns = Annotated[Designs, Depends(_part("designs"))]
+TheAnswers = Annotated[Questions[AnswerQuestion, DesignAnswer], Depends(_part("answers"))]
 TheLabelling = Annotated[LabelService, Depends(_part("labelling"))]
 TheStudies = Annotated[Studies, Depends(_part("studies"))]
 TheImports = Annotated[Imports, Depends(_part("imports"))]
@@ -95,6 +100,7 @@ TheApproving = Annotated[ApprovalService, Depends(_part("approving"))]
 TheComments = Annotated[Comments, Depends(_part("comments"))]
 TheReports = Annotated[Reports, Depends(_part("reports"))]
 ThePress = Annotated[Press, Depends(_part("press"))]
+TheStampKeys = Annotated[StampKeys | None, Depends(_part("stamp_keys"))]
 TheReadiness = Annotated[Readiness, Depends(_part("readiness"))]
 
 Units = Annotated[
@@ -114,6 +120,17 @@ async def get_once(request: Request, client: TheClient, idempotency_key: Idempot
 
 
 TheOnce = Annotated[Once, Depends(get_once)]
+
+
+async def require_room(request: Request, identity: TheIdentity) -> None:
+    """Refuse a file, before it arrives, that does not fit into the storage of its principal.
+
+    Raises
+    ------
+    LimitReached
+        If it does not fit.
+    """
+    await run_in_threadpool(identity.require_room, int(request.headers.get("content-length", 0)))
 
 
 async def expensive_steps(request: Request, client: TheClient) -> None:

@@ -18,9 +18,12 @@ from fastapi.responses import Response
 from starlette.middleware.gzip import GZipMiddleware
 from starlette.types import ASGIApp, Receive, Scope, Send
 
+from app.identity.principal import acting
+from app.identity.service import Identity
+from app.identity.usage import MIB
 from app.jobs.service import Jobs
 from app.pool.steps import Caller, present_caller
-from app.schemas.answers import Accepted, Answer
+from app.schemas.answers import Accepted, Answer, FileAccepted
 from app.schemas.problems import Responses
 
 LONGEST = 60.0  # s
@@ -86,6 +89,20 @@ async def client_left(request: Request) -> None:
         pass
 
 
+FILE_LATER: Responses = {
+    202: {"description": "the file is stored; its job is in the header Location", "model": FileAccepted}
+}
+"""Declared answers of a route that imports a file."""
+
+
+def file_accepted(job: str, identity: Identity) -> Response:
+    """Return status 202 for the import of a file, with the storage that the acting principal uses."""
+    amounts, limits = identity.usage(acting().id)
+    most = limits.storage_mb if limits else None
+    answer = FileAccepted(job=f"/api/v1/jobs/{job}", storage_mb=amounts.bytes / MIB, storage_limit_mb=most)
+    return accepted(job, answer)
+
+
 def accepted(job: str | None, answer: Answer | None = None) -> Response:
     """Return status 202 for work in progress, with the job in Location."""
     place = f"/api/v1/jobs/{job}"
@@ -105,7 +122,8 @@ def as_json(answer: Answer) -> bytes:
 P = ParamSpec("P")
 T = TypeVar("T")
 
-THREADS = 64
+THREADS = 300
+"""Largest number of these threads: more than the calculations that wait and run (`calculation_waiting`)."""
 WATCHED = 0.05
 """Time after which the service watches for a disconnected client [s]; most answers take less."""
 

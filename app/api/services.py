@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypedDict
 
+from app.answers.schemas import DesignAnswer
+from app.answers.service import AnswerQuestion
 from app.api.responses import Threads
 from app.approvals.comments import Comments
 from app.approvals.service import ApprovalService
@@ -34,6 +36,7 @@ from app.pool.steps import Steps
 from app.reports.paper import Press
 from app.reports.service import Reports
 from app.settings import Settings
+from app.signing.keys import StampKeys
 from app.solids.analyses import Analyses
 from app.solids.models import Models
 from app.solids.repair import ArtifactRepair
@@ -74,6 +77,7 @@ class Services:
     threads: Threads
     evaluations: Questions[Question, Pieces]
     designs: Designs
+    answers: Questions[AnswerQuestion, DesignAnswer]
     labelling: LabelService
     previews: Questions[PreviewRequest, Preview]
     decisions: Questions[decisions_of.DecisionQuestion, Decision]
@@ -95,3 +99,4 @@ class Services:
     press: Press
     streams: Streams
     readiness: Readiness
+    stamp_keys: StampKeys | None

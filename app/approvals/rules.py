@@ -26,11 +26,7 @@ MOST_NAMED = 3  # largest number of criteria that a refusal lists
 
 def unconfirmed(criteria: Iterable[Criterion]) -> list[str]:
     """Return one sentence for each criterion that is not waived and not met with a known error."""
-    return [
-        f"{one.name}: {one.stated()}"
-        for one in criteria
-        if one.waived is None and not (one.verdict == "met" and one.error_known)
-    ]
+    return [f"{one.name}: {one.stated()}" for one in criteria if one.waived is None and not one.is_confirmed]
 
 
 def require_acknowledgement(

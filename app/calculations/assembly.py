@@ -49,7 +49,9 @@ def assemble_calculations(
     worksheets.
     """
     size = settings.calculation_processes or len(os.sched_getaffinity(0))
-    limits = Limits(settings.calculation_job_deadline, settings.calculation_memory_mb)
+    limits = Limits(
+        settings.calculation_job_deadline, settings.calculation_memory_mb, "CRANKWRIGHT_CALCULATION_MEMORY_MB"
+    )
     light, network = (*PRELOAD, *sheets), (*PRELOAD, *sheets, *designs)
     of_designs = partial(WarmProcesses, network, spares=size)
     processes = (

@@ -46,7 +46,7 @@ def check_template_command(ctx: click.Context, file: Path, as_json: bool, second
 def _checked(path: Path, seconds: float | None) -> TeamFile:
     """Return the file with its faults, including conflicts with built-in versions."""
     settings = Settings()
-    limits = Limits(seconds or settings.template_seconds, settings.job_memory_mb)
+    limits = Limits(seconds or settings.template_seconds, settings.job_memory_mb, "CRANKWRIGHT_JOB_MEMORY_MB")
     worker = LocalProcesses(PRELOAD)
     try:
         file = TeamFiles.of_file(path, CheckInProcess(worker, limits))

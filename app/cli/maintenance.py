@@ -93,6 +93,7 @@ def restore_command(file: Path, data: Path | None) -> None:
         else:
             restored, place = restore(file, data, _say), str(data.absolute())
     _say(f"restored to {place}, the state of {restored.manifest['created']}")
+    _say("stamp keys are not in a backup: copy their folder, or the service creates a new key when it starts")
     if missing := (restored.end or {})["missing"]:
         _say(f"{len(missing)} files were lost before the backup was made: run `crankwright check --repair`")
 

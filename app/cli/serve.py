@@ -17,6 +17,7 @@ from app.plain import JsonObject
 from app.settings import Settings
 from app.settings.hosts import is_loopback
 from app.settings.machines import LOCAL
+from app.signing.keys import opened_keys
 from app.storage.connection import require_answer, require_sound
 from app.storage.errors import StorageError
 from app.storage.folder import DataFolder
@@ -78,12 +79,14 @@ def serve_command(host: str | None, port: int | None, data: Path | None, insecur
 
 
 def _check_data(settings: Settings) -> None:
-    """Check that the database and the file store can be used; raise StorageError or OSError if not."""
+    """Check that database, file store and stamp keys can be used; raise StorageError or OSError if not."""
     folder = DataFolder(settings.data)
     try:
         require_sound(settings, folder)
         if settings.artifacts_url is not None:
             require_own_store(settings, folder)
+        if opened_keys(settings) is None:
+            click.echo("STEP and GLB files stay unsigned: set CRANKWRIGHT_STAMP_KEYS", err=True)
     finally:
         folder.release()
 

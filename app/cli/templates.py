@@ -135,7 +135,7 @@ def show_template(id: str, version: int | None) -> None:
         click.echo(f"  {name:32} {schema.get('unit', ''):10} {schema['title']}{default}")
     click.echo("\nOutputs")
     for name, schema in description["outputs"]["properties"].items():
-        click.echo(f"  {name:32} {schema['unit']:10} {schema['title']}")
+        click.echo(f"  {name:32} {schema.get('unit', ''):10} {schema['title']}")
     for title in ("limits", "errata", "references"):
         lines = (entry["text"] if isinstance(entry, dict) else entry for entry in description[title])
         click.echo(f"\n{title.capitalize()}\n" + "\n".join(f"  {line}" for line in lines))

@@ -12,6 +12,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import (
     AfterValidator,
+    BeforeValidator,
     ConfigDict,
     Field,
     SerializerFunctionWrapHandler,
@@ -19,6 +20,7 @@ from pydantic import (
     model_serializer,
     model_validator,
 )
+from pydantic_core import PydanticCustomError
 
 from app.designs.variants.names import MOST_OVERRIDES, MOST_VARIANTS, PLACE, natural
 from app.plain import Json, JsonObject, Raw
@@ -149,6 +151,17 @@ LONGEST_WORKSHEET = 16 * 1024
 """Most characters of its text; a save reads it in the server, which takes up to a third of a second."""
 
 
+def _not_too_long(text: object) -> object:
+    """Refuse a worksheet with too many characters, and say where longer texts belong."""
+    if isinstance(text, str) and len(text) > LONGEST_WORKSHEET:
+        message = (
+            "the lines have {count} characters, and a design takes at most {most}; "
+            "put the longer part into a worksheet of its own, and add it as a step"
+        )
+        raise PydanticCustomError("string_too_long", message, {"count": len(text), "most": LONGEST_WORKSHEET})
+    return text
+
+
 class AssumedValue(Bounded):
     """A value that was proposed for a parameter, and not given by a person who knows it."""
 
@@ -195,7 +208,7 @@ class Document(Bounded):
         {},
         description="proposed values by parameter; a parameter is assumed as long as it has this value",
     )
-    worksheet: str = Field(
+    worksheet: Annotated[str, BeforeValidator(_not_too_long)] = Field(
         "",
         max_length=LONGEST_WORKSHEET,
         description="lines in the language of worksheets: formulas, checks and plots of the design's values; "

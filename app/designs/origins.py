@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import math
+from collections.abc import Iterable
 
 from app.designs.analyses import is_table
 from app.designs.engine.calculation import Calculation
-from app.designs.engine.needs import Needs, is_member, needs
+from app.designs.engine.needs import is_member, needs
 from app.designs.engine.row_design import Targets
-from app.designs.network import Block, Cell, Graph
+from app.designs.network import Cell, Graph
 from app.reference import Reference
 from templates.core.errors import FaultyText
 
@@ -18,7 +19,13 @@ def literals_behind(calculation: Calculation, starts: Iterable[Reference]) -> li
 
     Quantities that act through a measurement of a solid are included.
     """
-    graph, cells = calculation.graph, list[Cell]()
+    cells = cells_behind(calculation.graph, starts)
+    return [cell for cell in cells if not cell.relations and _is_single(calculation, cell)]
+
+
+def cells_behind(graph: Graph, starts: Iterable[Reference]) -> list[Cell]:
+    """Return the cells on which values depend, also through a measurement of a solid."""
+    cells = list[Cell]()
     left, seen = [*starts][::-1], set[Reference]()
     while left:
         reference = left.pop()
@@ -30,7 +37,7 @@ def literals_behind(calculation: Calculation, starts: Iterable[Reference]) -> li
             left += cell.uses.values()
         elif reference.block in graph.blocks:
             left += _inputs(graph, reference)
-    return [cell for cell in cells if not cell.relations and _is_single(calculation, cell)]
+    return cells
 
 
 def _inputs(graph: Graph, reference: Reference) -> list[Reference]:
@@ -49,35 +56,31 @@ def _is_single(calculation: Calculation, cell: Cell) -> bool:
     return column is not None and isinstance(column.value, float)
 
 
-def through_solids(graph: Graph, wanted: Targets) -> Mapping[Reference, Block]:
-    """Return the cells that affect values through a solid, each with the model of one such solid.
-
-    A step is traced as a whole, because its calculation needs all its inputs.
-    """
-    cells: dict[Reference, Block] = {}
-    left, seen = [*_needs(graph, wanted).waiting], set[str]()
-    while left:
-        model = graph.blocks[left.pop().block]
-        if model.name not in seen:
-            seen.add(model.name)
-            behind = needs(graph, (cell.reference for cell in model.cells.values()), ())
-            cells = {cell.reference: model for cell in behind.cells} | cells
-            left += behind.waiting
-    return cells
-
-
 def measures_behind(calculation: Calculation, wanted: Targets) -> dict[Reference, float]:
-    """Return the known measurements of solids [SI] on which values depend, without tables."""
-    measures: dict[Reference, float] = {}
-    for reference in _needs(calculation.graph, wanted).waiting:
-        if is_table(reference):
-            continue
-        try:
-            measures[reference] = float(calculation.value(reference))
-        except (FaultyText, KeyError):  # the solid is not built or not analysed
-            continue
-    return measures
+    """Return the measurements of solids [SI] on which values depend, also through other solids.
+
+    A measurement is NaN if its solid is not built or not analysed.
+    """
+    return {measure: _measure(calculation, measure) for measure in solid_measures(calculation.graph, wanted)}
 
 
-def _needs(graph: Graph, wanted: Targets) -> Needs:
-    return needs(graph, wanted.references, (), wanted.inside)
+def solid_measures(graph: Graph, wanted: Targets) -> list[Reference]:
+    """Return the measurements of solids on which values depend, without tables, also through other solids."""
+    measures = dict[Reference, None]()
+    left, seen = [*needs(graph, wanted.references, (), wanted.inside).waiting], set[Reference]()
+    while left:
+        if (reference := left.pop()) in seen:
+            continue
+        seen.add(reference)
+        if not is_table(reference):
+            measures[reference] = None
+        cells = graph.blocks[reference.block].cells.values()
+        left += needs(graph, (cell.reference for cell in cells), ()).waiting
+    return list(measures)
+
+
+def _measure(calculation: Calculation, reference: Reference) -> float:
+    try:
+        return float(calculation.value(reference))
+    except (FaultyText, KeyError):  # the solid is not built or not analysed
+        return math.nan

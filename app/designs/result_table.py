@@ -15,7 +15,7 @@ from app.designs.result_cells import Cells, TableCell, columns_of
 from app.designs.schemas.result_table import Number, ResultColumn, ResultRow, ResultTable
 from app.designs.schemas.variants import GoverningVariant, VariantResult
 from app.designs.variants.names import BASE
-from app.presentation.criteria import line
+from app.presentation.criteria import line, plain_name
 from app.reference import ItemReference, Reference
 from app.schemas.criteria import Criterion
 from templates.core.errors import listed
@@ -197,7 +197,7 @@ def headings(names: Iterable[str], graph: Graph) -> dict[str, str]:
     words = {name: _words(ItemReference.parse(name), graph) for name in names}
     counts = Counter(words.values())
     return {
-        name: f"{Reference.parse(name).block}: {text}" if counts[text] > 1 else text
+        name: f"{plain_name(Reference.parse(name).block)}: {text}" if counts[text] > 1 else text
         for name, text in words.items()
     }
 

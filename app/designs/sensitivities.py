@@ -1,8 +1,9 @@
 """Sensitivities of a value or criterion of a design to each quantity that its user typed.
 
 The slopes are central differences at the design point: 1 + 2 n rows in one array call, at the levels that the
-design used. A quantity that acts through a solid gets a reason instead of a slope, because each of its values
-needs another solid; so does one that acts through a rounded value, because the result changes in steps.
+design used. Measurements of solids change by the slopes of the solids (`app.designs.linear_solids`), so no
+other solid is built. A quantity that acts through a rounded value gets a reason instead of a slope, because
+the result changes in steps.
 """
 
 from __future__ import annotations
@@ -19,10 +20,12 @@ from app.designs.analyses import is_table
 from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.design_engine import DesignEngine, Table
+from app.designs.engine.needs import needs, varying
 from app.designs.engine.relations import MOST_OPERATIONS
 from app.designs.engine.row_design import MOST_VALUES, Targets
+from app.designs.linear_solids import LinearSolids, parameters_of, slopes_of
 from app.designs.network import Cell, Subject
-from app.designs.origins import literals_behind, measures_behind, through_solids
+from app.designs.origins import literals_behind, measures_behind
 from app.designs.roundings import between, in_words
 from app.designs.schemas.designs import Sensitivity
 from app.designs.slopes import Local, Slopes, slopes_at
@@ -92,15 +95,11 @@ def sensitivities(
     """Return the sensitivities of a value to the typed single quantities on which it depends."""
     wanted = asked.wanted
     behind = literals_behind(calculation, [*wanted.references, *wanted.inside])
-    solids = through_solids(calculation.graph, wanted)
-    places_behind = [cell.reference for cell in behind if cell.reference not in solids]
+    places_behind = [cell.reference for cell in behind]
     steps = between(calculation.graph, places_behind, [*wanted.references, *wanted.inside])
-    apart = {*solids, *steps, *asked.values}
-    places = [cell.reference for cell in behind if cell.reference not in apart]
-    through = [
-        _of_solid(cell.name, solids[cell.reference].name) for cell in behind if cell.reference in solids
-    ]
-    through += [_of_rounding(str(place), cells) for place, cells in steps.items()]
+    apart = {*steps, *asked.values}
+    places = [place for place in places_behind if place not in apart]
+    through = [_of_rounding(str(place), cells) for place, cells in steps.items()]
     try:
         surroundings = DifferenceRows(document, calculation, catalogues, asked, places[:MOST_VARIED])
         items = sorted(surroundings.items(), key=_rank) if places else []
@@ -108,11 +107,6 @@ def sensitivities(
         return Sensitivities(through[:MOST_SHOWN], error.faults[0].detail)
     all_items = [*items, *through]
     return Sensitivities(all_items[:MOST_SHOWN], _left_out(len(places), len(through), len(all_items)))
-
-
-def _of_solid(place: str, model: str) -> Sensitivity:
-    reason = f"it acts through the solid of {model}, which would have to be rebuilt for each value"
-    return Sensitivity(name=place, reason=reason)
 
 
 def _of_rounding(place: str, cells: Sequence[Cell]) -> Sensitivity:
@@ -170,12 +164,20 @@ class DifferenceRows:
             yield item
 
     def _table(self) -> Table:
+        self._check_measures()
         count, levels = self._points.count, self._levels
         values, criteria = self.asked.values, self.asked.criteria
         self._check_cost()
         rows = self._points.rows(0, count)
         columns = {place: rows[:, column] for column, place in enumerate(self.places)}
-        return self._engine(columns, values, levels=levels, judge=bool(criteria), criteria=criteria)
+        if not self._moving:
+            return self._engine(columns, values, levels=levels, judge=bool(criteria), criteria=criteria)
+        point = {place: column[:1] for place, column in columns.items()}
+        solids = LinearSolids(self._engine, self._moving, point, levels, self._measures, slopes_of)
+        columns |= solids.columns(columns, count)
+        table = self._engine(columns, values, levels=levels, judge=bool(criteria), criteria=criteria)
+        table.refusals |= solids.refusals
+        return table
 
     def _check_cost(self) -> None:
         """Raise InvalidInputs if the rows would take too long, or need too many operations on lists."""
@@ -204,14 +206,19 @@ class DifferenceRows:
         if not math.isfinite(value[0]):
             raise self._refused("no_value", self._missing(table))
 
-    def _missing(self, table: Table) -> str:
-        """Return the reason why the value is missing at the design point."""
-        waiting = self._engine.design.needs(self.asked.wanted).waiting
+    def _check_measures(self) -> None:
+        """Raise InvalidInputs if the value depends on a missing solid, or on a table of an analysis."""
+        wanted = self.asked.wanted
+        waiting = needs(self.calculation.graph, wanted.references, (), wanted.inside).waiting
         if tables := sorted(str(reference) for reference in waiting if is_table(reference)):
             what = f"{listed(tables)}, a table or a list"
-            return f"{self.asked.name} depends on {what}, so its slopes are not computed"
-        if waiting:
-            return f"{self.asked.name} waits for {listed(sorted(map(str, waiting)))}"
+            detail = f"{self.asked.name} depends on {what}, so its slopes are not computed"
+            raise self._refused("no_value", detail)
+        if missing := sorted(str(measure) for measure, value in self._measures.items() if math.isnan(value)):
+            raise self._refused("no_value", f"{self.asked.name} waits for {listed(missing)}")
+
+    def _missing(self, table: Table) -> str:
+        """Return the reason why the value is missing at the design point."""
         refusal = table.refusals.get(0)
         return refusal.detail if refusal else f"{self.asked.name} has no value"
 
@@ -219,14 +226,31 @@ class DifferenceRows:
         return InvalidInputs([Fault(self.asked.name, code, detail)])
 
     @cached_property
+    def _measures(self) -> dict[Reference, float]:
+        """Return the known measurements [SI] on which the value depends."""
+        return measures_behind(self.calculation, self.asked.wanted)
+
+    @cached_property
+    def _moving(self) -> list[Reference]:
+        """Return the measurements that differ between the rows."""
+        graph = self.calculation.graph
+        moving = varying(graph, self.places)
+        return [measure for measure in self._measures if graph.blocks[measure.block].solid in moving]
+
+    @cached_property
     def _engine(self) -> DesignEngine:
+        blocks = self.calculation.graph.blocks
+        models = [blocks[name] for name in dict.fromkeys(measure.block for measure in self._moving)]
+        parameters = [reference for model in models for reference in parameters_of(model).values()]
         return DesignEngine.of(
             self.document,
             self.catalogues,
-            self.places,
-            wanted=self.asked.values,
+            [*self.places, *self._moving],
+            wanted=[*self.asked.values, *parameters],
             criteria=self.asked.criteria,
-            measured=measures_behind(self.calculation, self.asked.wanted),
+            measured={
+                measure: value for measure, value in self._measures.items() if measure not in self._moving
+            },
         )
 
     @cached_property
@@ -256,13 +280,13 @@ class DifferenceRows:
 
 def _one_sided(below: int, above: int, value: Array, table: Table) -> str | None:
     """Return the reason why a slope is missing or one-sided; None if it is central."""
-    missing = [row for row in (below, above) if not math.isfinite(value[row])]
-    if not missing:
-        return None
-    refusal = table.refusals.get(missing[0])
-    why = refusal.detail if refusal else "there is no value"
-    where = "on both sides" if missing[1:] else "below" if missing == [below] else "above"
-    return f"{where}: {why}"
+    sides = {"below": below, "above": above}
+    missing = {side: row for side, row in sides.items() if not math.isfinite(value[row])}
+    refusals = {side: table.refusals.get(row) for side, row in missing.items()}
+    why = {side: refusal.detail if refusal else "there is no value" for side, refusal in refusals.items()}
+    if len(why) == 2 and why["below"] == why["above"]:
+        return f"on both sides: {why['below']}"
+    return "; ".join(f"{side}: {detail}" for side, detail in why.items()) or None
 
 
 def _is_temperature(*units: str) -> bool:

@@ -16,10 +16,15 @@ from app.plain import Json
 from app.presentation.numbers import rounded
 from app.reference import Reference
 from app.schemas.approval_steps import ORDER
+from app.signing.keys import StampKeys
 from app.solids import rows
 from app.storage.tables import ApprovalRow, PrincipalRow, RevisionModelRow
+from cad.face_marks import parameters_in
+from cad.file_kinds import plain_kind
 from cad.model import material_named
-from cad.stamp import Stamp
+from cad.signed_file import SIGNED, Claims
+from cad.signed_file import signed as signed_copy
+from cad.stamp import Stamp, stamped
 
 _MM3 = 1e-9  # 1 mm³ in m³
 
@@ -38,7 +43,38 @@ def stamp(session: Session, model: RevisionModelRow) -> Stamp:
         variant=model.variant,
         is_only=len(document["models"]) == 1,
         mass=build.measurements["measures"]["mass"] if build else None,
+        id=model.design_id,
+        build=model.build_key or "",
     )
+
+
+def sent(file: bytes, kind: str, sha: str, stamp: Stamp, keys: StampKeys | None) -> bytes:
+    """Return a stored file as a client gets it: with its stamp, which is signed if its kind allows that.
+
+    `sha` is the SHA-256 under which the file is stored. Without keys the stamp stays unsigned.
+    """
+    plain = plain_kind(kind)
+    copy = stamped(file, plain, stamp)
+    if keys is None or plain not in SIGNED:
+        return copy
+    return signed_copy(copy, plain, _claims(copy, kind, sha, stamp, keys.current.id), keys.sign)
+
+
+def _claims(file: bytes, kind: str, sha: str, stamp: Stamp, key: str) -> Claims:
+    """Return what a signed stamp claims about a file: to which revision and to which relations it belongs."""
+    only = {"variant": stamp.variant, "part": stamp.part or None}
+    return {
+        "format": 1,
+        "key": key,
+        "kind": kind,
+        "design": {"id": stamp.id, "name": stamp.design},
+        "revision": stamp.revision,
+        "date": stamp.date,
+        "model": stamp.model,
+        **{name: text for name, text in only.items() if text is not None},
+        "build": {"key": stamp.build, "sha256": sha},
+        "relations": {name: f"{stamp.model}.{name}" for name in parameters_in(file, plain_kind(kind))},
+    }
 
 
 def signed(session: Session, model: RevisionModelRow, owner: str) -> Stamp:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Awaitable, Callable
+from dataclasses import replace
 from typing import cast
 
 from fastapi import FastAPI, Request, Response
@@ -20,7 +21,9 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from app.http import access, guard
 from app.http.connections import AddressLimit
 from app.http.limits import AddressCrowded, BodyLimits, ServiceStopping
+from app.http.pace import Pace
 from app.http.strict_requests import HttpError
+from app.http.uploads import UploadRoute
 from app.identity.errors import IdentityError
 from app.identity.principal import ACTING
 from app.observation.processor_time import METER, Meter, Metered
@@ -61,6 +64,7 @@ class Gate:
     ) -> None:
         self.app, self.hosts, self.body, self.addresses = app, hosts, body, addresses
         self.refuse, self.unexpected = refuse, unexpected
+        self._turns = Pace()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Refuse a request, or pass it on as its principal; add the headers to the response."""
@@ -87,6 +91,8 @@ class Gate:
             self.addresses.leave(client)
 
     async def _admitted(self, scope: Scope, receive: Receive, answer: _Answer) -> None:
+        if scope["path"] not in access.HEALTH:
+            await self._turns.step()
         try:
             guard.check(scope, self.hosts)
             limited = self.body.admit(scope, receive)
@@ -157,6 +163,7 @@ def install(
         inner: ASGIApp = ExceptionMiddleware(AsyncExitStackMiddleware(app.router), handlers)
         for layer in reversed(app.user_middleware):
             inner = layer.cls(inner, *layer.args, **layer.kwargs)
-        return Gate(inner, hosts, body, addresses, refuse, unexpected)
+        uploads = frozenset(one.path for one in app.routes if isinstance(one, UploadRoute))
+        return Gate(inner, hosts, replace(body, uploads=uploads), addresses, refuse, unexpected)
 
     app.build_middleware_stack = built  # type: ignore[method-assign]

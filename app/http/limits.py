@@ -59,11 +59,17 @@ class BodyLimits:
         Longest wait for the next piece of a body [s], also added to the time that the size and `rate` allow.
     rate
         Lowest average rate at which a body must arrive [bytes/s].
+    upload_size
+        Largest body that is an uploaded file [bytes].
+    uploads
+        Paths to which files are uploaded.
     """
 
     size: int
     seconds: float
     rate: float
+    upload_size: int = 0
+    uploads: frozenset[str] = frozenset()
 
     def admit(self, scope: Scope, receive: Receive) -> Receive:
         """Return a `receive` that raises BodyTooLarge and BodyTooSlow; drop quoted cookies from the request.
@@ -80,7 +86,7 @@ class BodyLimits:
             scope["headers"] = list(_without_quoted_cookies(scope["headers"]))
         if WHOLE not in scope and (length != b"0" or b"transfer-encoding" in headers):
             receive = self._timed(receive)
-        return self._counted(receive) if length == b"0" else receive
+        return self._counted(scope, receive) if length == b"0" else receive
 
     def _check(self, scope: Scope, length: bytes) -> None:
         """Refuse a request whose head or stated length exceeds the limits."""
@@ -93,22 +99,28 @@ class BodyLimits:
             raise HeadTooLarge(f"a request may have at most {MOST_HEADERS} headers")
         if query.count(b"&") >= MOST_FIELDS:
             raise HeadTooLarge(f"the query of an address may have at most {MOST_FIELDS} fields")
-        if not (length.isdigit() and int(length) <= self.size):
-            raise self._too_large()
+        if not (length.isdigit() and int(length) <= self._largest(scope)):
+            raise self._too_large(scope)
 
-    def _too_large(self) -> BodyTooLarge:
-        return BodyTooLarge(f"a body may be at most {self.size / 2**20:g} MiB in size")
+    def _largest(self, scope: Scope) -> int:
+        return self.upload_size if scope["path"] in self.uploads else self.size
 
-    def _counted(self, receive: Receive) -> Receive:
+    def _too_large(self, scope: Scope) -> BodyTooLarge:
+        is_upload = scope["path"] in self.uploads
+        what, setting = ("an uploaded file", "UPLOAD") if is_upload else ("a body", "BODY")
+        most = f"{self._largest(scope) / 2**20:g} MiB in size"
+        return BodyTooLarge(f"{what} may be at most {most} (CRANKWRIGHT_{setting}_LIMIT)")
+
+    def _counted(self, scope: Scope, receive: Receive) -> Receive:
         """Return a `receive` that raises an error once a body of unknown length exceeds the limit."""
-        size = 0
+        size, largest = 0, self._largest(scope)
 
         async def counted() -> Message:
             nonlocal size
             message = await receive()
             size += len(message.get("body", b""))
-            if size > self.size:
-                raise self._too_large()
+            if size > largest:
+                raise self._too_large(scope)
             return message
 
         return counted

@@ -30,6 +30,7 @@ TAGS = {
     "templates": "Calculations: what each needs and returns; evaluate one, solve it, write it out.",
     "curves": "Tables of measured values, read as curves.",
     "designs": "Calculations and models tied by relations, with their revisions, results and criteria.",
+    "answers": "From requirements to the values that meet them, with the proof.",
     "variants": "Variants of a design, and the table that compares them.",
     "files": "STEP, meshes, drawings and pictures of the models of a design.",
     "reports": "Reports of a design on screen and paper, and its calculations written out.",

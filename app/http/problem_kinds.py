@@ -214,6 +214,7 @@ TABLE: dict[type[Exception], Kind] = {
     storage.ArtifactsUnreachable: Kind(
         "files-unreachable", 503, "The file store does not answer", "retry after the time in Retry-After"
     ),
+    storage.DiskFull: Kind("disk-full", 507, "The disk is full", "ask the operator to free disk space"),
     storage.DatabaseDamaged: Kind(
         "database-damaged", 503, "The database is damaged", "the operator restores a backup; see `detail`"
     ),
@@ -244,7 +245,9 @@ TABLE: dict[type[Exception], Kind] = {
     SheetNotRead: Kind("unreadable-sheet", 422, "The file cannot be read as a Mathcad sheet", "see `detail`"),
     UnreadableStep: Kind("unreadable-step", 422, "Not a STEP file", "send a STEP file (ISO 10303-21)"),
     workers.DeadlineExceeded: Kind("deadline", 422, "The work took too long", "simplify the model"),
-    workers.MemoryExceeded: Kind("memory", 422, "The work took too much memory", "simplify the model"),
+    workers.MemoryExceeded: Kind(
+        "memory", 422, "The work took too much memory", "simplify the model; see `detail`"
+    ),
     workers.JobCrashed: Kind("crashed", 422, "The process crashed", "change the inputs"),
     workers.JobCancelled: CANCELLED,
     ClientDisconnect: CANCELLED,  # left while sending its body, so nobody reads this

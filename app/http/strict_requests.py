@@ -7,12 +7,14 @@ endpoint without FastAPI's machinery.
 
 from __future__ import annotations
 
+import asyncio
 import hashlib
 import re
-from collections.abc import Awaitable, Callable, Container, Coroutine, Iterator, Mapping
+from collections.abc import AsyncIterator, Awaitable, Callable, Container, Coroutine, Iterator, Mapping
 from inspect import iscoroutinefunction
 from itertools import islice
 from json import JSONDecodeError
+from mmap import mmap
 from typing import TYPE_CHECKING, Any
 
 from fastapi import Request, Response
@@ -101,9 +103,7 @@ class StrictRequest(Request):
     async def parts(self) -> tuple[bytes, ...]:
         """Return the pieces of the body as received."""
         if not hasattr(self, "_parts"):
-            parts: list[bytes] = []
-            await self._receive_all(parts.append)
-            self._parts = tuple(parts)
+            self._parts = tuple([part async for part in self.pieces()])
         return self._parts
 
     async def body(self) -> bytes:
@@ -116,12 +116,17 @@ class StrictRequest(Request):
             self._body = parts[0] if len(parts) == 1 else b"".join(parts)
         return self._body
 
+    async def file(self) -> mmap | bytes:
+        """Return the body as one object, which may be mapped from disk."""
+        return await self.body()
+
     async def discard(self) -> None:
         """Receive and discard the body, because a client that is still sending may not read an answer yet."""
-        await self._receive_all()
+        async for _ in self.pieces():
+            pass
 
-    async def _receive_all(self, take: Callable[[bytes], object] | None = None) -> None:
-        """Receive the body and give each piece to a function, if there is one.
+    async def pieces(self) -> AsyncIterator[bytes]:
+        """Receive the body, and yield each piece that is not empty.
 
         Raises
         ------
@@ -134,8 +139,8 @@ class StrictRequest(Request):
             if message["type"] == "http.disconnect":
                 raise ClientDisconnect
             part = message.get("body", b"")
-            if part and take is not None:
-                take(part)
+            if part:
+                yield part
             is_complete = not message.get("more_body", False)
             size += len(part)
             if size > PIECE:
@@ -164,6 +169,8 @@ class StrictRoute(APIRoute):
     Its responses leave out fields that were not set.
     """
 
+    request_class = StrictRequest
+
     def __init__(
         self, path: str, endpoint: Callable[..., object], **options: Any
     ) -> None:  # signature of FastAPI
@@ -180,7 +187,7 @@ class StrictRoute(APIRoute):
         handler = super().get_route_handler()
 
         async def strict(request: Request) -> Response:
-            strictly = StrictRequest(request.scope, request.receive)
+            strictly = self.request_class(request.scope, request.receive)
             await self.check(strictly)
             return await handler(strictly)
 
@@ -408,7 +415,9 @@ async def _check_intricacy(request: StrictRequest) -> bool:
 
 async def fingerprint(request: Request) -> str:
     """Return the SHA-256 of a request's body and query parameters."""
-    digest = hashlib.sha256(await request.body())
+    content = await (request.file() if isinstance(request, StrictRequest) else request.body())
+    is_large = len(content) > PIECE  # hashing releases the interpreter lock, but would hold the event loop
+    digest = await asyncio.to_thread(hashlib.sha256, content) if is_large else hashlib.sha256(content)
     if query := request.scope["query_string"]:
         digest.update(b"?" + query)
     return digest.hexdigest()

@@ -179,6 +179,17 @@ class Identity:
             rows.find(session, principal)
             return rows.keys_of(session, principal)
 
+    def require_room(self, size: int) -> None:
+        """Check that a file fits into the storage of the acting principal [bytes].
+
+        Raises
+        ------
+        LimitReached
+            If it does not.
+        """
+        with self._database.read() as session:
+            usage.require_room(session, self._settings, size)
+
     def usage(self, principal: str) -> tuple[PrincipalUsage, Limits | None]:
         """Return the usage and limits of a principal; only the principal and administrators may read them.
 

@@ -94,8 +94,21 @@ def admit(session: Session, limits: Limits) -> None:
     note(session, who.id, jobs=1)
 
 
-def check(limits: Limits, used: PrincipalUsage, name: str) -> None:
-    """Refuse a principal that has used up a limit.
+def require_room(session: Session, settings: Settings, size: int) -> None:
+    """Check that a file fits into the storage of the acting principal [bytes].
+
+    Raises
+    ------
+    LimitReached
+        If it does not.
+    """
+    if limits := own_limits(session, settings):
+        who = ACTING.get()
+        check(limits, used(session, who.id), who.name, size)
+
+
+def check(limits: Limits, used: PrincipalUsage, name: str, size: int = 0) -> None:
+    """Refuse a principal that has used up a limit, or has no room for a file of some size [bytes].
 
     Raises
     ------
@@ -105,8 +118,9 @@ def check(limits: Limits, used: PrincipalUsage, name: str) -> None:
     if used.seconds >= limits.calculation_seconds:
         amounts = f"{used.seconds:.0f} s of {limits.calculation_seconds:.0f} s of calculation today (UTC)"
         raise LimitReached(f"{name} has used {amounts}", seconds_to_midnight())
-    if used.bytes >= limits.storage_mb * MIB:
+    if used.bytes + max(1, size) > limits.storage_mb * MIB:
         amounts = f"{used.bytes / MIB:.0f} MiB of {limits.storage_mb:.0f} MiB of storage"
+        amounts += f", and this file has {size / MIB:.1f} MiB" if size else ""
         raise LimitReached(f"{name} has used {amounts}; neither waiting nor deleting files frees it", None)
 
 

@@ -55,7 +55,7 @@ class Deadline:
     @property
     def limits(self) -> Limits:
         """Return the limits of a function for the remaining time; raises like `left`."""
-        return Limits(self.left(), self._limits.memory_mb)
+        return replace(self._limits, deadline=self.left())
 
     @contextmanager
     def kept(self) -> Iterator[None]:

@@ -209,7 +209,7 @@ class FreeCadProcess:
     def _refusal(self, about: About) -> Exception:
         code = about["refused"]
         if code == "memory":
-            return MemoryExceeded(self._limits.memory_mb)
+            return MemoryExceeded(self._limits.memory_mb, self._limits.memory_setting)
         return GeometryError(code, about["detail"], about["names"])
 
     def _crash(self) -> Exception:

@@ -138,7 +138,7 @@ def values_of(shape: ImportedModel) -> Values:
 
 def assembled(settings: Settings, store: Artifacts) -> Programs:
     """Return the CAD programs named in the settings."""
-    limits = Limits(settings.job_deadline, settings.job_memory_mb)
+    limits = Limits(settings.job_deadline, settings.job_memory_mb, "CRANKWRIGHT_JOB_MEMORY_MB")
     freecad = FreeCadDrawing(store, lambda: find(settings.freecad, settings.freecad_python), limits)
     by_name: dict[Program, Drawing] = {"freecad": freecad, "step": StepFiles(store)}
     by_name["assembly"] = AssemblyFiles(store)

@@ -4,13 +4,22 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Query, Request, Response
+from fastapi import APIRouter, Depends, Query, Response
 
-from app.api.dependencies import TheDatabase, TheModelImports, TheOnce, TheStore, TheThreads
+from app.api.dependencies import (
+    TheDatabase,
+    TheIdentity,
+    TheModelImports,
+    TheOnce,
+    TheStore,
+    TheThreads,
+    require_room,
+)
 from app.api.file_answers import UNCHANGED, StoredFile
-from app.api.responses import LATER, accepted
+from app.api.responses import FILE_LATER, file_accepted
 from app.catalogue.routes.templates import Number
 from app.http.strict_requests import MODEL_TYPES, StrictRoute, require_model
+from app.http.uploads import UploadRequest, UploadRoute
 from app.imported_models.programs import SET_CREO
 from app.imported_models.schemas import DrawingProgram, DrawingPrograms, ModelOrigin
 from app.imported_models.views import origin
@@ -21,6 +30,7 @@ router = APIRouter(prefix="/api/v1/models", tags=["models"], route_class=StrictR
 
 BINARY = {"schema": {"type": "string", "format": "binary"}}
 BODY = {"requestBody": {"required": True, "content": dict.fromkeys(sorted(MODEL_TYPES), BINARY)}}
+uploads = APIRouter(prefix="/api/v1/models", tags=["models"], route_class=UploadRoute)
 NewId = Annotated[
     str,
     Query(
@@ -58,16 +68,17 @@ def list_programs(imports: TheModelImports) -> DrawingPrograms:
     return DrawingPrograms(items=[freecad, creo, fixed])
 
 
-@router.post(
+@uploads.post(
     "/import",
     status_code=202,
-    responses={**LATER, **refusals(409, 429, 503)},
+    responses={**FILE_LATER, **refusals(409, 429, 503, 507)},
     openapi_extra=BODY,
-    dependencies=[Depends(require_model)],
+    dependencies=[Depends(require_model), Depends(require_room)],
 )
 async def import_model(
-    request: Request,
+    request: UploadRequest,
     imports: TheModelImports,
+    identity: TheIdentity,
     threads: TheThreads,
     once: TheOnce,
     id: NewId,
@@ -77,10 +88,12 @@ async def import_model(
 
     Aliases of spreadsheet cells and named constraints of sketches become parameters. Macros and Python
     features never run: a file that has them is refused. The result of the job is the version of the model. A
-    file with an existing id becomes its next version.
+    file with an existing id becomes its next version. The file may have up to 200 MiB
+    (`CRANKWRIGHT_UPLOAD_LIMIT`).
     """
-    body = await request.body()
-    return accepted(await threads.run(imports.begin, body, id, file, once))
+    content = memoryview(await request.file())
+    job = await threads.run(imports.begin, content, id, file, once)
+    return await threads.run(file_accepted, job, identity)
 
 
 @router.get("/{id}/versions/{number}/origin", responses=refusals(404))

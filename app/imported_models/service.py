@@ -32,6 +32,7 @@ from cad.model_classes import class_of
 from templates.core.errors import TemplateError
 
 IMPORT = "model_import"
+MOST_MANIFEST = 2**20  # bytes
 Kind = Literal["freecad", "creo", "step", "assembly"]
 FAILURES = (
     UnreadableModel, UnreadableStep, GeometryError, ModelIdTaken, TemplateError, DeadlineExceeded,
@@ -58,7 +59,7 @@ class ModelImports:
         self.database, self.store, self.jobs, self.catalogues = database, store, jobs, catalogues
         self.programs, self.registry = programs, registry
 
-    def begin(self, content: bytes, id: str, file: str, once: Once) -> str:
+    def begin(self, content: memoryview, id: str, file: str, once: Once) -> str:
         """Queue the import of a file as a model, and return the id of the job.
 
         Raises
@@ -77,9 +78,9 @@ class ModelImports:
         if kind == "freecad":
             self.programs.freecad.warm.find()
         if kind == "creo":
-            read(content)
+            read(bytes(content))
         if kind == "assembly":
-            read_assembly(content)
+            read_assembly(bytes(content))
         about = {"id": id, "name": last_name(file) or "model", "kind": kind}
         return queue_upload(self.jobs, self.store, IMPORT, content, about, once)
 
@@ -130,7 +131,7 @@ class ModelImports:
         return context.run(examine, described.text, id, drawn).step
 
 
-def kind_of(content: bytes) -> Kind:
+def kind_of(content: memoryview) -> Kind:
     """Return the kind of a file, judged by its first bytes.
 
     Raises
@@ -138,12 +139,15 @@ def kind_of(content: bytes) -> Kind:
     UnreadableModel
         If the kind is not supported.
     """
-    if content.startswith(b"PK\x03\x04"):
+    head = bytes(content[:200])
+    if head.startswith(b"PK\x03\x04"):
         return "freecad"
-    if content[:200].lstrip().startswith(b"ISO-10303-21"):
+    if head.lstrip().startswith(b"ISO-10303-21"):
         return "step"
-    if content[:200].lstrip().startswith(b"{"):
-        return "assembly" if is_assembly(content) else "creo"
+    if head.lstrip().startswith(b"{"):
+        if len(content) > MOST_MANIFEST:
+            raise UnreadableModel("too_large", f"a manifest may have {MOST_MANIFEST // 2**20} MiB at most")
+        return "assembly" if is_assembly(bytes(content)) else "creo"
     what = "the body is empty" if not content else "it begins as no model does"
     raise UnreadableModel(
         "not_a_model",

@@ -66,7 +66,7 @@ class Jobs:
         self._database = database
         self.settings = settings
         self._describe = describe
-        limits = Limits(settings.job_deadline, settings.job_memory_mb)
+        limits = Limits(settings.job_deadline, settings.job_memory_mb, "CRANKWRIGHT_JOB_MEMORY_MB")
         self._notices: Notices | None = None
         self._dispatcher = Dispatcher(
             database, worker, limits, self.events, describe, settings.workers, settings.lease_seconds

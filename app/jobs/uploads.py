@@ -7,7 +7,7 @@ from pathlib import PurePath
 
 from sqlalchemy.orm import Session
 
-from app.identity.usage import note_bytes
+from app.identity.usage import note_bytes, require_room
 from app.jobs.service import Jobs
 from app.plain import JsonObject
 from app.storage.artifacts import Artifacts
@@ -23,7 +23,7 @@ def queue_upload(
     jobs: Jobs,
     store: Artifacts,
     kind: str,
-    content: bytes,
+    content: bytes | memoryview,
     about: JsonObject,
     once: Once,
     check: Callable[[Session], object] = lambda session: None,
@@ -42,7 +42,7 @@ def queue_upload(
     Raises
     ------
     QueueFull, LimitReached
-        As raised by `Jobs.enqueue`.
+        As raised by `Jobs.enqueue`; also if the file does not fit into the principal's storage.
     """
     payload = {"file": store.put(content), **about, "client": once.client}
 
@@ -50,6 +50,7 @@ def queue_upload(
         if before := once.begin(session):
             return str(before["job"])
         check(session)
+        require_room(session, jobs.settings, len(content))
         job = jobs.enqueue(session, kind, payload, client=once.client)
         note_bytes(session, len(content))
         once.keep(session, 202, {"job": job})

@@ -85,10 +85,18 @@ class Repair:
         WorksheetPublication(database, self.catalogues, is_shared=False, at_once=math.inf)
         ImportedModelRegistry(database, self.catalogues, is_shared=False)
         self.builds = Builds(database, store, programs)
-        longest = Limits(settings.analysis_deadline, settings.analysis_memory_mb)
+        longest = Limits(
+            settings.analysis_deadline, settings.analysis_memory_mb, "CRANKWRIGHT_ANALYSIS_MEMORY_MB"
+        )
         self.analysing = AnalysisRunner(database, store, longest)
-        self.calculation = Limits(settings.calculation_job_deadline, settings.calculation_memory_mb)
-        self.runner = Direct(worker, Limits(settings.job_deadline, settings.job_memory_mb))
+        self.calculation = Limits(
+            settings.calculation_job_deadline,
+            settings.calculation_memory_mb,
+            "CRANKWRIGHT_CALCULATION_MEMORY_MB",
+        )
+        self.runner = Direct(
+            worker, Limits(settings.job_deadline, settings.job_memory_mb, "CRANKWRIGHT_JOB_MEMORY_MB")
+        )
 
     def row(self, row: NamedFile) -> str | None:
         """Repair the file that a row names; return the reason if that is impossible."""

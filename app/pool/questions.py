@@ -1,10 +1,10 @@
 """Answer a request at once if that is cheap, else by a job.
 
 `Questions` does this for evaluations, solutions and worksheets of templates, and for previews, decisions,
-solutions, explanations with sensitivities, analyses of tolerances, single variants and the impact of
-versions. If a client stops waiting, a job takes over the running calculation and stores the answer as an
-artifact, which the client fetches later. A job is stored under the key of its request, so an equal request
-finds the job or its answer.
+solutions, answers to requirements, explanations with sensitivities, analyses of tolerances, single variants
+and the impact of versions. If a client stops waiting, a job takes over the running calculation and stores the
+answer as an artifact, which the client fetches later. A job is stored under the key of its request, so an
+equal request finds the job or its answer.
 """
 
 from __future__ import annotations
@@ -40,12 +40,17 @@ from templates.core.errors import TemplateError
 
 CALCULATION, PREVIEW, DECISION = "calculation", "preview", "decision"
 TOLERANCE, SOLUTION, IMPACT, VARIANT = "tolerance", "solution", "impact", "variant"
-EXPLANATION = "explanation"
-ANSWERS = (CALCULATION, PREVIEW, DECISION, TOLERANCE, SOLUTION, IMPACT, VARIANT, EXPLANATION)
+EXPLANATION, ANSWER = "explanation", "answer"
+ANSWERS = (CALCULATION, PREVIEW, DECISION, TOLERANCE, SOLUTION, IMPACT, VARIANT, EXPLANATION, ANSWER)
 """Kinds of jobs whose result is an answer to a request that did not wait for it."""
 AGAIN = "again"  # payload key: the job whose lost answer is calculated again
 FAILURES = (TemplateError, NotFound, CannotRebuild, DeadlineExceeded, MemoryExceeded)
 """Errors that a question of any kind, or the loss of its answer, may cause."""
+
+_PACKAGES = (
+    "templates", "cad", "app/answers", "app/calculations", "app/designs", "app/studies", "app/tolerances",
+)  # fmt: skip
+"""Folders of the code on which answers depend."""
 
 Q = TypeVar("Q")
 A = TypeVar("A", bound=Answer | Pieces)
@@ -319,7 +324,7 @@ def program() -> tuple[str, ...]:
     root = Path(templates.__file__).parents[1]
     files = sorted(
         path
-        for package in ("templates", "cad", "app/calculations", "app/designs", "app/tolerances")
+        for package in _PACKAGES
         for path in (root / package).rglob("*")
         if path.suffix in (".py", ".json", ".npz", ".csv")
     )

@@ -12,12 +12,14 @@ from typing import Protocol
 
 from app.presentation import numbers
 from app.reference import Reference
+from templates.core.criteria.judgement import in_words
 
 WORDS = {"met": "met", "not_met": "not met", "undecided": "undecided", "not_checked": "not checked"}
 _SIGN = re.compile(r"^(.*?)\s*(>=|<=)\s*(.*)$", re.DOTALL)
 _NAME = re.compile(r"(?:[A-Za-z]\w*\.)*([A-Za-z]\w*)")
 _ONE_NAME = re.compile(r"\s*(?:[A-Za-z]\w*\.)*[A-Za-z]\w*\s*")
 UNKNOWN = "error unknown"
+SIGNS = {">=": "≥", "<=": "≤"}
 
 
 class Amount(Protocol):
@@ -97,6 +99,7 @@ class Line:
     name: str
     step: str  # the block whose value is judged; empty if there is none
     title: str
+    subject: str  # the step and the title
     verdict: str
     tag: str
     verdict_words: str
@@ -117,18 +120,14 @@ class Line:
         """Return the words in front of the sentence: the step, and the title if the sentence lacks it."""
         return self.step if self.sentence.startswith(self.title) else self.subject
 
-    @property
-    def subject(self) -> str:
-        """Return the step and the title."""
-        return f"{self.step}: {self.title}" if self.step else self.title
-
 
 def line(criterion: JudgedCriterion) -> Line:
     """Return a criterion as a table row of texts."""
     return Line(
         name=criterion.name,
-        step=step_of(criterion),
-        title=title(criterion),
+        step=step_of(criterion.name, criterion.require),
+        title=title(criterion.name, criterion.require),
+        subject=subject_of(criterion.name, criterion.require),
         verdict=criterion.verdict,
         tag=tag(criterion),
         verdict_words=verdict_words(criterion),
@@ -157,22 +156,34 @@ def plain_name(text: str) -> str:
     return _NAME.sub(lambda name: name[1].replace("_", " "), text).strip()
 
 
-def step_of(criterion: JudgedCriterion) -> str:
+def step_of(name: str, require: str) -> str:
     """Return the block whose value is judged, from the criterion's name or its requirement."""
-    name = Reference.parse(criterion.name)
-    if name.output is not None:
-        return name.block
-    value = Reference.parse(sides(criterion.require)[0].strip())
+    own = Reference.parse(name)
+    if own.output is not None:
+        return own.block
+    value = Reference.parse(sides(require)[0].strip())
     return value.block if value.output is not None and value.block.isidentifier() else ""
 
 
-def title(criterion: JudgedCriterion) -> str:
+def subject_of(name: str, require: str) -> str:
+    """Return a criterion in words, as every table names it: `film: bore deflection (rigid)`."""
+    step, words = step_of(name, require), title(name, require)
+    return f"{plain_name(step)}: {words}" if step else words
+
+
+def limit_of(require: str) -> str:
+    """Return the sign and the limit of a requirement in words: `≥ permissible film`."""
+    _, sign, limit = sides(require)
+    return f"{SIGNS.get(sign, sign)} {in_words(limit)}"
+
+
+def title(name: str, require: str) -> str:
     """Return the judged value in words; for a value calculated within the criterion, the criterion's name.
 
     If the words do not contain the criterion's own name, that name follows, because another criterion may
     judge the same value.
     """
-    left, own = sides(criterion.require)[0], plain_name(Reference.parse(criterion.name).own_name)
+    left, own = sides(require)[0], plain_name(Reference.parse(name).own_name)
     subject = plain_name(left) if _ONE_NAME.fullmatch(left) else own
     return subject if own in subject else f"{subject} ({own})"
 

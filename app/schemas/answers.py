@@ -138,6 +138,13 @@ class Accepted(Answer):
     job: str = Field(description="path of the job")
 
 
+class FileAccepted(Accepted):
+    """The file is stored, and its import continues as a job."""
+
+    storage_mb: float = Field(description="content stored by the principal so far, with this file [MiB]")
+    storage_limit_mb: float | None = Field(description="limit of this amount; null if there is none [MiB]")
+
+
 class Version(Answer):
     """One version of a template or model."""
 

@@ -64,6 +64,11 @@ class Criterion(Answer):
     )
     waived: str | None = Field(None, description="why the criterion is waived")
 
+    @property
+    def is_confirmed(self) -> bool:
+        """Return whether the criterion is met with a known error."""
+        return self.verdict == "met" and self.error_known
+
     def in_units(self, system: System) -> Self:
         """Return the criterion, including its sentence, in a system of units."""
         shown = super().in_units(system)

@@ -68,6 +68,7 @@ MEANINGS = {
     429: "too much is waiting; retry after `Retry-After`",
     431: "the headers are too large",
     503: "the service stops, its storage fails, or a file is being made again; retry after `Retry-After`",
+    507: "the disk of the service has no room for the file",
 }
 
 

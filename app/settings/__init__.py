@@ -33,6 +33,11 @@ class Settings(BaseSettings):
         None, description="address of an S3 server other than Amazon's; keys come from the AWS environment"
     )
     artifact_cache_mb: int = Field(2048, gt=0, description="local copies of a bucket's files [MiB]")
+    stamp_keys: Path | None = Field(
+        None,
+        description="folder of the keys that sign stamps, which the servers of a team share; `stamp-keys` in "
+        "`data` if not given; a team's files stay unsigned without it",
+    )
     engine: Annotated[str, AfterValidator(check_engine)] = Field(
         "local",
         description="what runs jobs: `local`, or a Dask scheduler such as `tls://scheduler:8786`",
@@ -77,7 +82,10 @@ class Settings(BaseSettings):
             '`["10.0.0.0/24"]`'
         ),
     )
-    body_limit: int = Field(16 * 2**20, gt=0, description="largest request body [bytes]")
+    body_limit: int = Field(
+        16 * 2**20, gt=0, description="largest request body that is not the file of a model [bytes]"
+    )
+    upload_limit: int = Field(200 * 2**20, gt=0, description="largest uploaded file of a model [bytes]")
     template_folders: tuple[Path, ...] = Field((), description="folders of a team's own templates")
     template_seconds: float = Field(
         30.0, gt=0, description="longest time for loading and checking a team's file [s]"
@@ -117,7 +125,7 @@ class Settings(BaseSettings):
         0, ge=0, description="processes for expensive calculations; 0: one for each core"
     )
     calculation_waiting: int = Field(
-        32, gt=0, description="expensive calculations that may wait before new ones are refused"
+        200, gt=0, description="expensive calculations that may wait before new ones are refused"
     )
     calculation_deadline: float = Field(
         30.0,

@@ -11,6 +11,7 @@ StorageError
  ├── NotForTeams           the settings do not let several servers share the data
  ├── DatabaseDamaged       pages or rows of the database cannot be read as they were written
  ├── DatabaseLost          the database of a data folder is missing, or is not the one it had
+ ├── DiskFull              the disk has no room for an uploaded file
  ├── ArtifactMissing       no artifact has this hash
  ├── ArtifactDamaged       the bytes of an artifact no longer have its hash
  ├── ArtifactsUnreachable  the store of the artifacts does not answer now
@@ -100,6 +101,20 @@ class DatabaseUnavailable(StorageError):
 
 class NotForTeams(StorageError):
     """The settings do not let several servers share the data."""
+
+
+class DiskFull(StorageError):
+    """The disk has no room for an uploaded file [bytes]."""
+
+    def __init__(self, size: int, room: int) -> None:
+        super().__init__(size, room)
+        self.size, self.room = size, room
+
+    def __str__(self) -> str:
+        return (
+            f"The disk of the service has room for {self.room / 2**20:.0f} MiB, and this file needs "
+            f"{self.size / 2**20:.0f} MiB. Nothing was stored; ask the operator to free disk space."
+        )
 
 
 class DatabaseDamaged(StorageError):

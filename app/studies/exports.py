@@ -30,8 +30,9 @@ def heads(listing: RowList, system: System) -> list[list[str]]:
     """Return the two heading rows: words with units as on the page, then names for programs."""
     criteria, tail = listing.plan.criteria, ["verdict", "error unknown", "level", "reason"]
     words = [_heading(listing, name, shown_unit(unit, system)) for name, unit in listing.units.items()]
+    judged = [_heading(listing, name, "") for name in criteria]
     return [
-        ["Row", *words, *criteria, *(text.capitalize() for text in tail)],
+        ["Row", *words, *judged, *(text.capitalize() for text in tail)],
         ["row", *listing.names, *criteria, *tail],
     ]
 

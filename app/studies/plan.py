@@ -12,6 +12,7 @@ from app.designs.document import Document
 from app.designs.engine.design_engine import Table
 from app.designs.result_table import headings
 from app.plain import JsonObject
+from app.presentation.criteria import subject_of
 from app.reference import Reference
 from app.studies.bodies import MOST_BUILT, MOST_ROWS
 from app.studies.chunks import Levels, called, placed
@@ -57,7 +58,7 @@ class Plan:
     solids: int = 0  # largest number of solids that the rows need
     solid_seconds: float = 0.0  # time to build a solid [s]; 0 in plans of older studies
     set_aside: dict[str, str] = field(default_factory=dict)  # replaced relations, by place
-    words: dict[str, str] = field(default_factory=dict)  # headings of places and outputs; empty if older
+    words: dict[str, str] = field(default_factory=dict)  # headings of names and criteria; empty if older
 
     def share(self, rows: int, solids: int) -> float:
         """Return the progress, from 0 to 1, after some rows and solids, weighted by their estimated times."""
@@ -140,9 +141,13 @@ def planned(task: Task, rows: Rows | None, solid_seconds: float) -> tuple[Plan, 
         solids=needed.solids,
         solid_seconds=solid_seconds if needed.solids else 0.0,
         set_aside=relations_at(Document.model_validate_json(task.design.document), body.set_aside),
-        words=headings(names, ready.engine.graph),
+        words=headings(names, ready.engine.graph) | _criteria_in_words(ready, criteria),
     )
     return plan, given
+
+
+def _criteria_in_words(ready: TaskState, criteria: Sequence[str]) -> dict[str, str]:
+    return {name: subject_of(name, criterion_of(ready.engine, name).require) for name in criteria}
 
 
 def _count(asked: StudyQuestion, given: Array | None) -> int:

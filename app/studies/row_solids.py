@@ -16,16 +16,14 @@ from app.designs.analyses import axes_of, is_table
 from app.designs.document import Document
 from app.designs.engine.design_engine import DesignEngine, Refusal
 from app.designs.engine.needs import needs, varying
-from app.designs.engine.refusals import refusal_of
 from app.designs.engine.row_design import Levels, Rows, Targets
+from app.designs.engine.row_shapes import numbers_of, shape_of
 from app.designs.network import Block, subjects
 from app.reference import Reference
 from app.studies.bodies import StudyIn
-from cad.model import CadModel
 from cad.regenerate import as_text
 from templates.core.arrays import Array, Mask
-from templates.core.errors import Fault, InvalidInputs
-from templates.core.language.spec import Choice
+from templates.core.errors import Fault
 
 Texts = tuple[tuple[str, str], ...]
 """All parameters of a model by name, as `as_text` writes them; they identify a solid."""
@@ -157,7 +155,7 @@ class RowSolids:
         result: RowsWithSolids,
     ) -> None:
         """Fill in the columns of one model's measurements."""
-        names = [name for name, cell in model.cells.items() if not isinstance(cell.declared, Choice)]
+        names = numbers_of(model)
         references = [model.cells[name].reference for name in names]
         table = self.engine({**rows, **result.columns}, references, levels=levels)
         result.levels |= table.levels
@@ -167,10 +165,11 @@ class RowSolids:
         for row in np.flatnonzero(~there & ~result.waiting).tolist():
             _refuse(result, [row], table.refusals.get(row, Refusal(model.name, "not_finite", NO_VALUE)))
         for values, numbers in _distinct(matrix, there):
-            texts = self._solid(model, dict(zip(names, _apart(values, columns), strict=True)))
-            if isinstance(texts, Refusal):
-                _refuse(result, numbers, texts)
+            shape = shape_of(model, dict(zip(names, _apart(values, columns), strict=True)))
+            if isinstance(shape, Refusal):
+                _refuse(result, numbers, shape)
                 continue
+            texts = tuple(sorted(as_text(shape).items()))
             solid = by_texts.get((model.name, texts))
             if solid is None:
                 measures = tuple(reference.member for reference in self.measures_of(model.name))
@@ -181,16 +180,6 @@ class RowSolids:
             else:
                 for name, value in solid.measures:
                     result.columns[Reference.parse(f"{model.name}.{name}")][numbers] = value
-
-    def _solid(self, model: Block, values: Mapping[str, float | list[float]]) -> Texts | Refusal:
-        """Return the parameters of a solid as text, or a refusal with their faults."""
-        words = {n: _word(cell.raw) for n, cell in model.cells.items() if n not in values}
-        try:
-            shape = model.cls.from_si({**words, **values})
-        except InvalidInputs as error:
-            return refusal_of([fault.within(model.name) for fault in error.faults])
-        assert isinstance(shape, CadModel), "what is measured is a model"
-        return tuple(sorted(as_text(shape).items()))
 
 
 def _side_by_side(columns: Sequence[Array], count: int) -> Array:
@@ -207,10 +196,6 @@ def _apart(values: Array, columns: Sequence[Array]) -> list[float | list[float]]
         part.tolist() if column.ndim > 1 else float(part[0])
         for part, column in zip(parts, columns, strict=True)
     ]
-
-
-def _word(raw: object) -> str:
-    return str(raw["value"] if isinstance(raw, dict) else raw)
 
 
 def _refuse(result: RowsWithSolids, numbers: Sequence[int], refusal: Refusal) -> None:

@@ -77,6 +77,7 @@ def running(
             "CRANKWRIGHT_DATABASE_URL": database.create(DATABASE),
             "CRANKWRIGHT_ARTIFACTS_URL": store.create(BUCKET),
             "CRANKWRIGHT_S3_ENDPOINT": store.endpoint,
+            "CRANKWRIGHT_STAMP_KEYS": str(folder / "stamp-keys"),
             **(settings or {}),
         }
         scheduler = Scheduler(folder, environment)

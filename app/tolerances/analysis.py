@@ -13,8 +13,11 @@ import numpy as np
 
 from app.designs.document import Document
 from app.designs.engine.design_engine import DesignEngine, Refusal, Table
-from app.designs.engine.needs import needs
+from app.designs.engine.needs import needs, varying
+from app.designs.engine.row_design import Targets
 from app.designs.graph import Catalogues, Graph, build_graph, raise_if
+from app.designs.linear_solids import LinearSolids, parameters_of, slopes_of
+from app.designs.origins import solid_measures
 from app.designs.roundings import between, in_words, with_chosen_sizes
 from app.reference import Reference
 from app.schemas.answers import Warning
@@ -25,6 +28,7 @@ from app.tolerances.scatter import SCRAMBLINGS, Rows, Scatter, scatter
 from app.tolerances.shares import Shares, shares
 from app.tolerances.variables import TolerancedVariable, faults, varied
 from app.tolerances.worst import Worst, worst
+from cad.inspect import MEASURES
 from templates.core.arrays import Array
 from templates.core.errors import Fault, unknown_name, unknown_names
 from templates.core.language.spec import Choice, Curve, Profile, Text
@@ -62,7 +66,9 @@ class Analysis:
     demands
         The judged criteria, by name.
     warnings
-        Warnings about tolerances that do not take part.
+        Warnings about tolerances that do not take part, and about measurements of the first order.
+    measures
+        The measurements of solids on which the outputs and criteria depend.
     """
 
     graph: Graph
@@ -72,6 +78,7 @@ class Analysis:
     demands: dict[str, CriterionVariable]
     varied: list[TolerancedVariable]
     warnings: list[Warning]
+    measures: list[Reference]
     first_refusal: Refusal | None = None
     stated: dict[str, bool] = field(
         default_factory=dict
@@ -97,13 +104,15 @@ class Analysis:
         named = every if question.criteria is None else {n: every[n] for n in question.criteria}
         outputs = _outputs(graph, question, named)
         wanted = {*outputs, *(r for demand in named.values() for r in demand.references)}
+        measures = _measures(graph, wanted)
+        wanted |= {one for name in _blocks(measures) for one in parameters_of(graph.blocks[name]).values()}
         chosen, warnings = varied(graph, needs(graph, wanted, ()).cells)
         raise_if(list(faults(chosen, warnings)))
         warnings += _held(written, [one.reference for one in chosen], wanted)
-        engine = DesignEngine.of(
-            document, catalogues, [v.reference for v in chosen], wanted=wanted, pending=True
-        )
-        return cls(graph, engine, question, outputs, named, chosen, warnings)
+        places = [one.reference for one in chosen]
+        warnings += _linear(graph, places, measures)
+        engine = DesignEngine.of(document, catalogues, [*places, *measures], wanted=wanted, pending=True)
+        return cls(graph, engine, question, outputs, named, chosen, warnings, measures)
 
     @cached_property
     def factors(self) -> list[Factor]:
@@ -165,11 +174,23 @@ class Analysis:
     def _table(self, rows: Array, *, judge: bool = False) -> Table:
         """Return the outputs, and with `judge` also the verdicts, for rows of factors."""
         given = {one.reference: rows[:, column] for column, one in enumerate(self.varied)}
+        given |= self._measured(given, len(rows))
         criteria = list(self.demands) if judge else []
         table = self.engine(given, self.outputs, levels=self._levels, judge=judge, criteria=criteria)
         if self.first_refusal is None and table.refusals:
             self.first_refusal = table.refusals[min(table.refusals)]
         return table
+
+    def _measured(self, given: Mapping[Reference, Array], count: int) -> dict[Reference, Array]:
+        """Return the measurements of the solids of all rows, to the first order in the tolerances."""
+        if not self.measures:
+            return {}
+        point = {one.reference: np.array([one.factor.nominal]) for one in self.varied}
+        solids = LinearSolids(self.engine, self.measures, point, self._levels, {}, slopes_of)
+        columns = solids.columns(given, count)
+        if self.first_refusal is None and solids.refusals:
+            self.first_refusal = solids.refusals[min(solids.refusals)]
+        return columns
 
     def _require_single(self, nominal: Table) -> None:
         raise_if(
@@ -207,6 +228,28 @@ class Analysis:
             remedy = 'name cheaper ones, for example `"levels": {"film": "map"}`, or ask for fewer points'
             detail = f"{rows} rows at these levels ({levels}) take too long to calculate; {remedy}"
             raise_if([Fault("levels", "too_expensive", detail)])
+
+
+def _measures(graph: Graph, wanted: Collection[Reference]) -> list[Reference]:
+    """Return the measurements on which values depend, without those of finite elements and of distances."""
+    behind = solid_measures(graph, Targets.of(wanted))
+    return sorted((r for r in behind if r.analysis is None and r.member in MEASURES), key=str)
+
+
+def _blocks(measures: Sequence[Reference]) -> list[str]:
+    """Return the models of measurements, each once."""
+    return list(dict.fromkeys(measure.block for measure in measures))
+
+
+def _linear(graph: Graph, places: Collection[Reference], measures: Sequence[Reference]) -> list[Warning]:
+    """Return a warning for each measurement that differs between products."""
+    moving = varying(graph, places)
+    detail = "it changes by the slopes of the nominal solid, to the first order in the tolerances"
+    return [
+        Warning(code="first_order", name=str(measure), detail=detail)
+        for measure in measures
+        if graph.blocks[measure.block].solid in moving
+    ]
 
 
 def _held(graph: Graph, places: Collection[Reference], wanted: Collection[Reference]) -> list[Warning]:

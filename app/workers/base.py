@@ -20,10 +20,20 @@ UNLIMITED = sys.maxsize
 
 @dataclass(frozen=True)
 class Limits:
-    """The longest time of one run [s], and its memory in addition to the program itself [MiB]."""
+    """The longest time of one run [s], and its memory in addition to the program itself [MiB].
+
+    `memory_setting` is the name of the operator's setting of this memory; empty if it is fixed.
+    """
 
     deadline: float = 60.0
     memory_mb: int = 3072
+    memory_setting: str = ""
+
+    @property
+    def memory(self) -> str:
+        """Return the memory limit in words."""
+        setting = f", which the operator may raise ({self.memory_setting})" if self.memory_setting else ""
+        return f"{self.memory_mb} MiB of memory{setting}"
 
 
 def shares_process(function: Callable[..., object], args: tuple[object, ...]) -> bool:

@@ -19,18 +19,22 @@ class WorkerError(Exception):
 
 
 class JobCrashed(WorkerError):
-    """The process died; a negative exit code is the signal that killed it, and None means unknown."""
+    """The process died; a negative exit code is the signal that killed it, and None means unknown.
 
-    def __init__(self, exit_code: int | None) -> None:
-        super().__init__(exit_code)
-        self.exit_code = exit_code
+    `memory` is the memory limit in words.
+    """
+
+    def __init__(self, exit_code: int | None, memory: str = "") -> None:
+        super().__init__(exit_code, memory)
+        self.exit_code, self.memory = exit_code, memory
 
     def __str__(self) -> str:
         if self.exit_code is None:
             return "The process disappeared."
         if self.exit_code < 0:
             number = -self.exit_code
-            return f"The process was killed by signal {number} ({signal.strsignal(number)})."
+            limit = f" A geometry kernel may end so at its limit, {self.memory}." if self.memory else ""
+            return f"The process was killed by signal {number} ({signal.strsignal(number)}).{limit}"
         return f"The process ended early with exit code {self.exit_code}."
 
 
@@ -46,14 +50,15 @@ class DeadlineExceeded(WorkerError):
 
 
 class MemoryExceeded(WorkerError):
-    """The function needed more memory than its limit [MiB]."""
+    """The function needed more memory than its limit [MiB], which a setting of the operator may set."""
 
-    def __init__(self, megabytes: int) -> None:
-        super().__init__(megabytes)
-        self.megabytes = megabytes
+    def __init__(self, megabytes: int, setting: str = "") -> None:
+        super().__init__(megabytes, setting)
+        self.megabytes, self.setting = megabytes, setting
 
     def __str__(self) -> str:
-        return f"The work needed more than {self.megabytes} MiB of memory and was stopped."
+        remedy = f"; the operator may raise {self.setting}" if self.setting else ""
+        return f"The work needed more than {self.megabytes} MiB of memory and was stopped{remedy}."
 
 
 class JobCancelled(WorkerError):

@@ -110,7 +110,7 @@ def _run(task: Callable[[], object], request: Request, connection: Connection) -
         reusable = request.reusable and not _has_grown(request.limits)
         return pack(ResultMessage(_packed_result(result), reusable)), reusable
     except MemoryError:
-        raise MemoryExceeded(request.limits.memory_mb) from None
+        raise MemoryExceeded(request.limits.memory_mb, request.limits.memory_setting) from None
 
 
 def _packed_result(result: object) -> PackedMessage:

@@ -108,7 +108,7 @@ class JobProcess:
         messages.register(self._connection.fileno(), select.POLLIN)
         while True:
             _await_message(messages, end, limits, cancelled)
-            match self._receive():
+            match self._receive(limits):
                 case Progress(fraction, text):
                     if on_progress is not None:
                         on_progress(fraction, text)
@@ -116,11 +116,11 @@ class JobProcess:
                     self.reusable = outcome.reusable
                     return outcome
 
-    def _receive(self) -> object:
+    def _receive(self, limits: Limits) -> object:
         try:
             return receive(self._connection).unpacked()
         except (EOFError, ConnectionResetError):
-            raise JobCrashed(self._exit_code()) from None
+            raise JobCrashed(self._exit_code(), limits.memory) from None
 
     def _exit_code(self) -> int | None:
         try:

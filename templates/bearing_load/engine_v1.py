@@ -93,8 +93,8 @@ class Engine(ArticulatedEngine):
     cylinder_offset is the distance of the cylinder's axis from the shaft, positive on the side to which the
     pin moves first; an offset of the piston pin adds to it.
     rod_centre is measured from the big end. Without rod_inertia the rod is two masses at its pins.
-    crank_unbalance is that of the throw of each cylinder, at its pin and position, without the rod; two rods
-    on one pin share the given value. Webs and their counterweights at web_positions add to it; their angles
+    crank_unbalance is counted for each cylinder, at its pin and position, without the rod: of a throw with
+    two rods, give each cylinder half. Webs and their counterweights at web_positions add to it; their angles
     are measured from the pin of the throw, which is the nearest one unless web_throws is given.
     A pressure table begins with the intake stroke as in bearing_load: combustion is at 360 deg in four
     strokes, at 0 in two. pressure_factor multiplies the pressure of a cylinder; gas_pressure is that before

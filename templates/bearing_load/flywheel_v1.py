@@ -65,10 +65,10 @@ class Flywheel(Cylinder):
     Crank i is at −(firing interval) · (its position in the firing order, from 0), plus the angle of its bank;
     angles of balancing masses are also measured in the sense of the crank angle.
     Positions are along the shaft, from any plane; couples are about reference_position.
-    Bank angles (V engines) are measured from the x axis in the sense of rotation. Each cylinder includes its
-    own crank masses, so two rods on one pin share the given value. Bank angles with opposite signs describe
-    another crank: each throw follows from the bank of its cylinder. Unequal firing intervals and articulated
-    rods are not supported for banks.
+    Bank angles (V engines) are measured from the x axis in the sense of rotation. Each cylinder
+    includes the given crank masses: of a throw with two rods, give half. Bank angles with opposite signs
+    describe another crank: each throw follows from the bank of its cylinder. Unequal firing intervals and
+    articulated rods are not supported for banks.
     Primary and secondary amplitudes are those of the reciprocating masses alone, in banks the largest over a
     revolution; the rotating couple is that of the rotating masses alone. Residual forces include both, up to
     the second harmonic.

@@ -1,6 +1,6 @@
 """The gallery's engines, for tests that use a part of them."""
 
-from app.web.gallery.engine import FOUR
+from app.designs.gallery.engine import FOUR
 
 
 def four_cylinders(**inputs):

@@ -6,7 +6,7 @@ from patience import until
 from serving import API, created, revision
 from study_helpers import begun, ended, rows
 
-from app.web.gallery.gallery import GALLERY
+from app.designs.gallery.gallery import GALLERY
 
 pytestmark = pytest.mark.slow  # each row builds a solid and solves it by finite elements
 

@@ -16,11 +16,11 @@ from serving import API, revision
 from app.designs.document import Document
 from app.designs.engine.calculate import calculate
 from app.designs.engine.verdicts import judged
+from app.designs.gallery.gallery import GALLERY
 from app.designs.graph import Catalogues, build_graph
 from app.designs.service import resolved
 from app.designs.variants.table import applied
 from app.reference import Reference
-from app.web.gallery.gallery import GALLERY
 from cad.catalogue import models
 from cad.regenerate import build_key
 from templates.door import built_in

@@ -5,7 +5,7 @@ import pytest
 from engines import bearings_of, four_cylinders
 from serving import API, created, revision
 
-from app.web.gallery.gallery import GALLERY
+from app.designs.gallery.gallery import GALLERY
 
 ENGINE = bearings_of(GALLERY["engine"].document)
 FILM = "film.minimum_film_thickness"

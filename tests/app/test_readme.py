@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from serving import API, created, patched, revision
 
-from app.web.gallery.gallery import GALLERY
+from app.designs.gallery.gallery import GALLERY
 
 README = " ".join((Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8").split())
 FILM = "film.minimum_film_thickness"

@@ -29,7 +29,7 @@ REFERENCES = Path(__file__).parents[1] / "references"
 def table(name: str) -> list[dict[str, float]]:
     """Rows of a reference table as numbers."""
     lines = [line for line in (REFERENCES / name).read_text().splitlines() if not line.startswith("#")]
-    return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(lines)]
+    return [{key: float(value) for key, value in row.items() if value} for row in csv.DictReader(lines)]
 
 
 def identified(row: dict[str, float]) -> str:
@@ -40,7 +40,8 @@ def identified(row: dict[str, float]) -> str:
 def test_butenschoen_1976_static(row: dict[str, float]) -> None:
     film, _ = extrapolated_film(row["eps"], row["width_ratio"])
     assert film.So == pytest.approx(row["So"], rel=0.006)
-    assert np.degrees(film.attitude) == pytest.approx(row["beta_deg"], abs=0.03)
+    if "beta_deg" in row:  # three misprints are left out
+        assert np.degrees(film.attitude) == pytest.approx(row["beta_deg"], abs=0.03)
     assert film.side_flow == pytest.approx(row["Q"], rel=0.02)
 
 
@@ -101,14 +102,14 @@ def test_iso_7902_fit_errs_by_what_is_stated_of_it() -> None:
     """References README: So within 6.8 %, median 2.4 %; angle within 2.4°, median 0.7°, of the tables."""
     rows = table("static_film_butenschoen_1976.csv")
     eps, ratio, So, beta = (
-        np.array([row[k] for row in rows]) for k in ("eps", "width_ratio", "So", "beta_deg")
+        np.array([row.get(k, np.nan) for row in rows]) for k in ("eps", "width_ratio", "So", "beta_deg")
     )
     load = np.abs(load_ISO_7902(eps, ratio) / So - 1)
     angle = np.abs(np.degrees(attitude_ISO_7902(eps, ratio)) - beta)
     assert load.max() < 0.07
     assert np.median(load) < 0.03
-    assert angle.max() < 2.5
-    assert np.median(angle) < 0.8
+    assert np.nanmax(angle) < 2.5
+    assert np.nanmedian(angle) < 0.8
 
 
 def test_petrov_worked_case() -> None:

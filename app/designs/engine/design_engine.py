@@ -11,6 +11,8 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from app.catalogue.catalogues import Catalogues
 from app.designs.analyses import measured_unit
 from app.designs.document import Document
@@ -251,6 +253,11 @@ class DesignEngine:
         """
         raise_if(list(self.design.faults([reference], {})))
         return self.written.nominal(Targets.of([reference]), {}).column(reference).value
+
+    def nominal_value(self, reference: Reference) -> float:
+        """Return the single value [SI] of a name in the document; NaN if there is none, or several."""
+        value = np.asarray(self.nominal(reference), dtype=float)
+        return float(value) if value.ndim == 0 else float("nan")
 
     def checked(self, rows: Rows, levels: Levels | None = None) -> tuple[int, dict[Reference, Array]]:
         """Return the number of rows, and their columns as arrays.

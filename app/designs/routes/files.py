@@ -18,6 +18,7 @@ from app.api.dependencies import (
     TheModels,
     ThePress,
     TheSettings,
+    TheStampKeys,
     TheStore,
 )
 from app.api.file_answers import UNAVAILABLE, UNCHANGED, lost
@@ -33,6 +34,7 @@ from app.http.strict_requests import StrictRoute
 from app.jobs.service import Jobs
 from app.reports.paper import Press
 from app.schemas.problems import RouteOptions, refusals
+from app.signing.keys import StampKeys
 from app.solids.models import File, Models
 from app.solids.repair import ArtifactRepair
 from app.solids.routes.models import PATIENCE, send_file
@@ -43,7 +45,8 @@ from app.storage.tables import RevisionModelRow
 from cad.drafting.paper import TYPESETTER
 from cad.file_kinds import DRAWINGS, MEDIA_TYPES, plain_kind, with_deflection, with_part
 from cad.file_names import plain_name
-from cad.stamp import STAMPED, Stamp, stamped, takes_stamp
+from cad.signed_file import SIGNED
+from cad.stamp import STAMPED, Stamp, takes_stamp
 
 router = APIRouter(prefix="/api/v1/designs", tags=["files"], route_class=StrictRoute)
 
@@ -102,6 +105,7 @@ class FileRequest:
     jobs: Jobs
     healing: ArtifactRepair
     press: Press
+    keys: StampKeys | None
     owner: str
     client: str
     accept: str | None
@@ -178,7 +182,9 @@ class FileRequest:
             "Content-Disposition": disposition(plain, wide),
         }
         plain_one = plain_kind(file.kind)
-        content = stamped(self.store.read(file.sha256), plain_one, stamp) if plain_one in STAMPED else None
+        is_own = plain_one in STAMPED or (plain_one in SIGNED and self.keys is not None)
+        stored = self.store.read(file.sha256) if is_own else b""
+        content = stamps.sent(stored, file.kind, file.sha256, stamp, self.keys) if is_own else None
         if content is None:
             headers["ETag"] = f'"{file.sha256}"'
         else:  # of what is typeset, that from which and with what: so a client that has it waits for nothing
@@ -199,6 +205,7 @@ async def plain_file_request(
     jobs: TheJobs,
     healing: TheHealing,
     press: ThePress,
+    keys: TheStampKeys,
     settings: TheSettings,
     client: TheClient,
     accept: Accept = None,
@@ -213,6 +220,7 @@ async def plain_file_request(
         jobs,
         healing,
         press,
+        keys,
         settings.owner,
         client,
         accept,
@@ -260,7 +268,7 @@ async def read_model_file(
 
     STEP files exist at once; other kinds are created at the first request. If that takes longer than the
     client waits, the answer is 202. STEP files and drawings also contain the name of the design, and drawings
-    contain the signatures.
+    contain the signatures. The stamp of STEP and GLB files is signed by the service (`/stamp-keys`).
     """
     return await request.answer(lambda session: views.good_model(session, id, name, number), kind)
 

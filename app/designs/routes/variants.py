@@ -23,6 +23,7 @@ from app.api.dependencies import (
     TheHealing,
     TheJobs,
     TheOnce,
+    TheStampKeys,
     TheStore,
     TheThreads,
     TheVariantDetails,
@@ -31,6 +32,7 @@ from app.api.dependencies import (
 from app.api.file_answers import UNAVAILABLE, lost
 from app.api.responses import LATER, finished, later, patience, written
 from app.catalogue.catalogues import Catalogues
+from app.designs import stamps
 from app.designs.bodies import Note
 from app.designs.document import Overrides, Word
 from app.designs.routes.designs import Id, IfMatch, Number, Prefer
@@ -51,9 +53,9 @@ from app.jobs.service import Jobs
 from app.presentation.units import System
 from app.schemas.bounds import Bounded, at_most
 from app.schemas.problems import Responses, refusals
+from app.signing.keys import StampKeys
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
-from cad.stamp import stamped
 
 router = APIRouter(
     prefix="/api/v1/designs", tags=["variants"], route_class=StrictRoute, dependencies=[ExpensiveSteps]
@@ -237,6 +239,7 @@ async def read_variants_file(
     store: TheStore,
     jobs: TheJobs,
     healing: TheHealing,
+    keys: TheStampKeys,
     number: Number | None = None,
     prefer: Prefer = None,
     if_none_match: IfNoneMatch = None,
@@ -255,7 +258,7 @@ async def read_variants_file(
     revision, ready, missing, design = await run_in_threadpool(find)
     names = distinct(entry.name for entry in ready)
     headers = {
-        "ETag": _tag(names, ready),
+        "ETag": _tag(names, ready, keys),
         "Cache-Control": "no-cache",
         "Design-Revision": str(revision),
         "Content-Disposition": named(f"{design} variants", revision, "zip", "attachment"),
@@ -266,22 +269,25 @@ async def read_variants_file(
     for sha in dict.fromkeys(entry.sha256 for entry in ready):
         if answer := await lost(sha, healing, jobs, prefer):
             return answer
-    return StreamingResponse(_zip(store, names, ready), media_type=MEDIA_TYPE, headers=headers)
+    return StreamingResponse(_zip(store, names, ready, keys), media_type=MEDIA_TYPE, headers=headers)
 
 
-def _zip(store: Artifacts, names: Sequence[str], ready: Sequence[Entry]) -> Iterator[bytes]:
+def _zip(
+    store: Artifacts, names: Sequence[str], ready: Sequence[Entry], keys: StampKeys | None
+) -> Iterator[bytes]:
     pairs = zip(names, ready, strict=True)
-    return archived((name, partial(_file, store, entry)) for name, entry in pairs)
+    return archived((name, partial(_file, store, entry, keys)) for name, entry in pairs)
 
 
-def _file(store: Artifacts, entry: Entry) -> bytes:
-    return stamped(store.read(entry.sha256), STEP, entry.stamp)
+def _file(store: Artifacts, entry: Entry, keys: StampKeys | None) -> bytes:
+    return stamps.sent(store.read(entry.sha256), STEP, entry.sha256, entry.stamp, keys)
 
 
-def _tag(names: Sequence[str], ready: Sequence[Entry]) -> str:
+def _tag(names: Sequence[str], ready: Sequence[Entry], keys: StampKeys | None) -> str:
     """Return a strong ETag for the ZIP, which depends only on these values."""
-    parts = (
+    parts = [
         f"{name}\0{entry.sha256}\0{entry.stamp.date}\0{entry.stamp.material}\n"
         for name, entry in zip(names, ready, strict=True)
-    )
-    return f'"{hashlib.sha256("".join(parts).encode()).hexdigest()}"'
+    ]
+    key = keys.current.id if keys else ""
+    return f'"{hashlib.sha256("".join([key, *parts]).encode()).hexdigest()}"'

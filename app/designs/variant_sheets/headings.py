@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection
 
 from app.reference import Reference
+
+SIGNS = {
+    r"(?<!\w)[-−](?=\s*[0-9])": "minus", "[-−–]": "", r"\+": "plus", "%": "percent", "°": "deg",
+    r"(?<=[0-9])[.,](?=[0-9])": "point",
+}  # fmt: skip
+"""How a sign is written in the name of a variant, which has letters, digits and underscores only."""
 
 
 def place_named(heading: str, places: Collection[str]) -> str:
@@ -23,3 +30,10 @@ def place_named(heading: str, places: Collection[str]) -> str:
 def joined(words: str) -> str:
     """Return words joined to a name by underscores."""
     return "_".join(words.split())
+
+
+def row_name(words: str) -> str:
+    """Return the name of a row from words as people write them: `pin +10 %` → `pin_plus_10_percent`."""
+    for sign, word in SIGNS.items():
+        words = re.sub(sign, f" {word} ", words)
+    return joined(words)

@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from app.designs.variant_sheets.grid import Grid, address, column_of, refuse
-from app.designs.variant_sheets.headings import joined, place_named
+from app.designs.variant_sheets.headings import place_named, row_name
 from app.designs.variant_sheets.values import given, relation, same
 from app.designs.variants.names import MOST_OVERRIDES, MOST_VARIANTS, RESERVED
 from app.plain import Raw
@@ -177,7 +177,7 @@ def _name(grid: Grid, row: int, variants: Collection[str], faults: list[Fault]) 
     """Return the name of the variant in a row, and whether it is valid; an invalid name adds a fault."""
     before = len(faults)
     typed, where = grid.cell(row, 0), address(row, 0)
-    name = joined(typed)
+    name = row_name(typed)
     if not name:
         faults.append(
             Fault(where, "missing_name", "this row has no name; name its variant, such as `main_1`")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -89,6 +89,18 @@ class Columns:
         reasons = {0: self.reasons[number]} if number in self.reasons else {}
         certain = None if self.is_known is None else self.is_known[part]
         return Columns(objectives, values, limits, low, high, reasons, is_known=certain)
+
+    def with_sides(self, part: Callable[[Array], Array]) -> Columns:
+        """Return the columns with `part` of the arrays of shape (N, m); the rest stays."""
+        certain = None if self.is_known is None else part(self.is_known.astype(float)) == 1
+        return replace(
+            self,
+            values=part(self.values),
+            limits=part(self.limits),
+            low=part(self.low),
+            high=part(self.high),
+            is_known=certain,
+        )
 
     def worst(self, problem: Problem) -> Array:
         """Return the margin of each criterion at the bad end of its band, shape (N, m).

@@ -139,7 +139,7 @@ class Run:
         rows = rows[np.argsort(seen.violation[rows], kind="stable")[: max(1, len(rows) // 4)]]
         unit = self.scanned.unit[rows]
         apart = np.linalg.norm(unit[:, None] - np.array(self.surface.places), axis=2).min(axis=1)
-        return unit[[int(apart.argmax())]]
+        return self.problem.space.snapped(unit[[int(apart.argmax())]])
 
     def learn(self, unit: Array, rounds: Sequence[Round], fine: Columns) -> None:
         """Update the corrections with the latest confirmed points.

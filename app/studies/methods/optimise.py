@@ -92,7 +92,11 @@ def optimise(
     InvalidInputs
         If no row of the scan has results; the code is `all_refused`.
     """
-    run = Run(problem, explore, confirm, seed, within)
+    return optimised_run(Run(problem, explore, confirm, seed, within), rounds)
+
+
+def optimised_run(run: Run, rounds: int = ROUNDS) -> Optimum:
+    """Return the optimum of a run that has not begun; the run then holds the corrections."""
     done: list[Round] = []
     state: State | None = None
     while state is None and len(done) < rounds:

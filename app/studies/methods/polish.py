@@ -153,9 +153,14 @@ def _slopes(middle: Array, one: Array, other: Array, a: Array, b: Array) -> Arra
     return np.where(np.isfinite(slopes), slopes, 0.0)
 
 
-def polished(scaled: ScaledProblem, start: Array, accuracy: float = ACCURACY) -> Place:
-    """Return the best point on the path of SLSQP from a start, to an accuracy of the scaled objective."""
-    tangent = _Tangent(scaled, start, scaled.surface.problem.space.continuous)
+def polished(
+    scaled: ScaledProblem, start: Array, accuracy: float = ACCURACY, free: Mask | None = None
+) -> Place:
+    """Return the best point on the path of SLSQP from a start, to an accuracy of the scaled objective.
+
+    Only the variables of the mask `free` move; by default all that are continuous.
+    """
+    tangent = _Tangent(scaled, start, scaled.surface.problem.space.continuous if free is None else free)
     first = tangent(start[tangent.free])
     if tangent.free.size and first[0] < REFUSED:
         _slsqp(tangent, start[tangent.free], len(first[2]), accuracy)
@@ -167,12 +172,13 @@ def _slsqp(tangent: _Tangent, start: Array, held: int, accuracy: float) -> None:
     _minimise(lambda z: tangent(z)[:2], start, [(0.0, 1.0)] * start.size, [limits] if held else [], accuracy)
 
 
-def relaxed(scaled: ScaledProblem, place: Place) -> Place:
-    """Return the point of least violation near a given point.
+def relaxed(scaled: ScaledProblem, place: Place, free: Mask | None = None) -> Place:
+    """Return the point of least violation near a given point; `free` as for `polished`.
 
     The violation t becomes the objective, with the constraints margins + t >= 0.
     """
-    tangent = _Tangent(scaled, place.unit, scaled.surface.problem.space.continuous)
+    space = scaled.surface.problem.space
+    tangent = _Tangent(scaled, place.unit, space.continuous if free is None else free)
     start = place.unit[tangent.free]
     margins = tangent(start)[2]
     if not start.size or not np.isfinite(place.violation):

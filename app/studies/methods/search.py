@@ -7,15 +7,17 @@ separately. The optimum is not proven to be global.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
+from itertools import combinations, product
 from math import prod
 
 import numpy as np
 
 from app.studies.methods.answers import Answer, Columns, Problem, all_refused
 from app.studies.methods.correction import CorrectedAnswer, SearchView
-from app.studies.methods.points import Grid, sobol_sequence
+from app.studies.methods.points import sobol_sequence
 from app.studies.methods.polish import ROUGH, Place, ScaledProblem, polished, rank, relaxed
-from app.studies.methods.space import Space, Values
+from app.studies.methods.space import Interval, Space, Values
 from templates.core.arrays import Array, Integers
 
 SCANNED = 4096
@@ -28,6 +30,8 @@ COMBINATIONS = 24
 """Combinations of list values that are polished, each from its best point."""
 RELAXED = 3
 """Number of infeasible end points from which the point of least violation is searched."""
+MOST_TOGETHER = 3
+"""Largest number of grids whose values all move at once to a neighbour; of more grids, two move at once."""
 APART = 0.15
 """Smallest distance in the unit cube between two starts."""
 
@@ -58,15 +62,21 @@ def scan(problem: Problem, answer: Answer, seed: int) -> Scan:
 
 def scanned(space: Space) -> int:
     """Return the number of rows of a scan."""
-    lists = [len(v.values) for v in space.variables if isinstance(v, Values)]
-    return min(prod(lists), SCANNED) if len(lists) == len(space) else SCANNED
+    lists = _lists(space)
+    return min(prod(map(len, lists)), SCANNED) if len(lists) == len(space) else SCANNED
+
+
+def _lists(space: Space) -> list[tuple[float, ...]]:
+    """Return the values of each variable that has a list or a grid."""
+    lists = (v.values if isinstance(v, Values) else v.grid for v in space.variables)
+    return [one for one in lists if one]
 
 
 def _places(space: Space, seed: int) -> Array:
-    lists = [len(v.values) for v in space.variables if isinstance(v, Values)]
-    if len(lists) == len(space) and prod(lists) <= SCANNED:
-        grid = Grid(space)
-        return space.place(grid.rows(0, grid.count))
+    lists = _lists(space)
+    if len(lists) == len(space) and prod(map(len, lists)) <= SCANNED:
+        rows = np.stack(np.meshgrid(*lists, indexing="ij"), axis=-1).reshape(-1, len(space))
+        return space.place(rows)
     return sobol_sequence(len(space), seed, 0, SCANNED)
 
 
@@ -94,7 +104,61 @@ def best(surface: CorrectedAnswer, scanned: Scan, starts: tuple[Array, ...] = ()
     if ends[0].violation > 0:
         ends = sorted((relaxed(scaled, end) for end in ends[:RELAXED]), key=rank)
     # Only the best point is polished to full accuracy. A fresh start also resets SLSQP's Hessian.
-    return min(ends[0], polished(scaled, ends[0].unit), key=rank)
+    end = min(ends[0], polished(scaled, ends[0].unit), key=rank)
+    return on_grid(scaled, end) if surface.problem.space.gridded.any() else end
+
+
+def on_grid(scaled: ScaledProblem, end: Place) -> Place:
+    """Return the best point on the grid near the end of a search.
+
+    All neighbouring values of the grid are tried, each with the other variables polished, until no neighbour
+    of the best point is better.
+    """
+    space = scaled.surface.problem.space
+    free = space.continuous & ~space.gridded
+    tried: dict[bytes, Place] = {}
+
+    def tried_at(unit: Array) -> Place:
+        if (key := unit[space.gridded].tobytes()) not in tried:
+            place = polished(scaled, unit, free=free)
+            tried[key] = relaxed(scaled, place, free) if place.violation > 0 and free.any() else place
+        return tried[key]
+
+    here = tried_at(space.snapped(end.unit[None])[0])
+    while True:
+        near = min((tried_at(unit) for unit in neighbours(space, here.unit)), key=rank, default=here)
+        if rank(near) >= rank(here):
+            return here
+        here = near
+
+
+def neighbours(space: Space, unit: Array) -> list[Array]:
+    """Return the points whose values of grids are at most one step away, and of at most two grids if many."""
+    gridded = np.flatnonzero(space.gridded).tolist()
+    most = len(gridded) if len(gridded) <= MOST_TOGETHER else 2
+    moved = []
+    for signs in _steps(len(gridded), most):
+        place = unit.copy()
+        for column, sign in zip(gridded, signs, strict=True):
+            variable = space.variables[column]
+            assert isinstance(variable, Interval)
+            stop = int(np.abs(variable.stops - unit[column]).argmin()) + sign
+            place[column] = variable.stops[min(max(stop, 0), len(variable.stops) - 1)]
+        moved.append(place)
+    return moved
+
+
+@lru_cache
+def _steps(count: int, most: int) -> tuple[tuple[int, ...], ...]:
+    """Return all combinations of steps -1, 0 and 1 of which 1 to `most` are not 0."""
+    if count <= MOST_TOGETHER:
+        return tuple(signs for signs in product((-1, 0, 1), repeat=count) if any(signs))
+    moved = (which for k in range(1, most + 1) for which in combinations(range(count), k))
+    return tuple(
+        tuple(dict(zip(which, signs, strict=True)).get(n, 0) for n in range(count))
+        for which in moved
+        for signs in product((-1, 1), repeat=len(which))
+    )
 
 
 def middle_and_width(objectives: Array) -> tuple[Array, Array]:

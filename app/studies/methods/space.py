@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -19,6 +20,8 @@ Spacing = Literal["linear", "log"]
 class Interval:
     """A variable between two bounds [SI]; with log spacing, each decade has the same share.
 
+    A search moves freely between the values of a `grid` [SI, ascending], but ends on one of them.
+
     Raises
     ------
     InvalidInputs
@@ -30,6 +33,7 @@ class Interval:
     low: float
     high: float
     spacing: Spacing = "linear"
+    grid: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.low) and math.isfinite(self.high) and self.low < self.high):
@@ -54,6 +58,11 @@ class Interval:
         else:
             places = (values - self.low) / (self.high - self.low)
         return np.clip(places, 0.0, 1.0)
+
+    @cached_property
+    def stops(self) -> Array:
+        """Return the positions from 0 to 1 of the values of the grid."""
+        return self.place(np.array(self.grid))
 
     def steps(self, count: int) -> Array:
         """Return `count` values [SI], including both bounds."""
@@ -116,6 +125,20 @@ class Space:
     def continuous(self) -> Mask:
         """Return a mask of the variables that are continuous between two bounds, shape (d,)."""
         return np.array([isinstance(variable, Interval) for variable in self.variables], dtype=bool)
+
+    @property
+    def gridded(self) -> Mask:
+        """Return a mask of the variables that have a grid, shape (d,)."""
+        return np.array([isinstance(v, Interval) and bool(v.grid) for v in self.variables], dtype=bool)
+
+    def snapped(self, unit: Array) -> Array:
+        """Return points of the unit cube, shape (N, d), moved to the nearest values of each grid."""
+        moved = unit.copy()
+        for column, variable in enumerate(self.variables):
+            if isinstance(variable, Interval) and variable.grid:
+                nearest = np.abs(unit[:, column, None] - variable.stops).argmin(axis=1)
+                moved[:, column] = variable.stops[nearest]
+        return moved
 
     def at(self, unit: Array) -> Array:
         """Return rows [SI] for points of the unit cube, shape (N, d)."""

@@ -14,6 +14,7 @@ from fastapi import APIRouter, Depends, Request, Response
 from pydantic import JsonValue
 
 from app.designs.bodies import DesignIn
+from app.designs.gallery.gallery import GALLERY
 from app.designs.labels import LabelsIn
 from app.designs.routes.designs import document_of
 from app.designs.schemas.designs import Design
@@ -21,7 +22,6 @@ from app.presentation.input_text import value_of
 from app.reference import Reference
 from app.web.design.declarations import change_of
 from app.web.design.page import design_page
-from app.web.gallery.gallery import GALLERY
 from app.web.new_step.routes import NewStep, address, beside, new_step, step_page, versioned
 from app.web.shared.blocks import Refusal
 from app.web.shared.forms import Patch, fields, forms_only, inner, kept, lines_of, patch_of

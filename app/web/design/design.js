@@ -8,6 +8,7 @@ import { startDrives } from "./drives.js";
 import { isolated } from "../shared/isolated.js";
 import { startLater } from "../shared/later.js";
 import { startLists } from "../lists/lists.js";
+import { startSuggestions } from "../shared/suggestions.js";
 import { live } from "../shared/live.js";
 import { Names } from "./names.js";
 import { OwnLines, namesOf } from "./own_lines.js";
@@ -24,6 +25,7 @@ import { goTo, showKeys, showVerdict, startVerdict } from "../verdict/verdict.js
 
 startDownloads();
 startLists();
+startSuggestions();
 
 const form = document.getElementById("sheet");
 const { design: id, revision } = form.dataset;

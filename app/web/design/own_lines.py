@@ -14,6 +14,7 @@ from app.schemas.criteria import Criterion
 from app.web.shared.blocks import Refusal
 from app.web.worksheet.page import Row
 from app.worksheets.schemas.worksheets import SheetLine
+from templates.core.sheets.design_lines import NOT_IN_DESIGNS
 
 
 @dataclass(frozen=True)
@@ -24,6 +25,7 @@ class OwnLines:
     faults: list[str]
     rows: list[Row]
     plots: list[Plot]
+    refused: tuple[str, ...] = NOT_IN_DESIGNS  # statements that completion does not offer
 
 
 def own_lines(design: Design, revision: Revision, refusal: Refusal) -> OwnLines:

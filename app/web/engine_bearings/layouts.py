@@ -95,3 +95,11 @@ LAYOUTS: dict[str, Layout] = {
 def written_order(order: Sequence[int]) -> str:
     """Return a firing order as people write it: `1-3-4-2`."""
     return "-".join(map(str, order))
+
+
+def usual_orders() -> dict[str, str]:
+    """Return each usual firing order as people write it, with its layouts: `1-3-4-2`, `in-line four`."""
+    layouts: dict[str, list[str]] = {}
+    for one in LAYOUTS.values():
+        layouts.setdefault(written_order(one.order), []).append(one.title)
+    return {order: "; ".join(titles) for order, titles in layouts.items()}

@@ -17,11 +17,11 @@ from pydantic import JsonValue
 from app.catalogue.catalogues import Catalogues
 from app.designs.document import Document
 from app.designs.engine.calculate import calculate
+from app.designs.gallery.engine_bearings import SHELL, Bearing, bearings, film_step, heat_step
 from app.designs.graph import build_graph
 from app.presentation import numbers
 from app.presentation.units import System, shown_unit
 from app.web.engine_bearings import ratios
-from app.web.engine_bearings.document import SHELL, Bearing, bearings, film_step, heat_step
 from app.web.engine_bearings.fields import QUANTITIES, TYPING, Typing, firing_order, oil_grade, viscosity
 from app.web.engine_bearings.gas import Diagram
 from app.web.engine_bearings.layouts import LAYOUTS, Layout

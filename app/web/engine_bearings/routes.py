@@ -47,7 +47,7 @@ async def create(request: Request, services: ThePageServices) -> Response:
     """Create the design, or return the form with its proposals and faults."""
     parts = await parts_of(request)
     typed = {name: part.text for name, part in parts.items() if part.file is None}
-    file = parts[DIAGRAM].content if DIAGRAM in parts else b""
+    file = bytes(parts[DIAGRAM].content) if DIAGRAM in parts else b""
     typed |= {"gas": DIAGRAM} if file else {}
     diagram, fault = await services.run(_read, file, typed)
     proposal = await services.run(propose, typed, diagram, _typing(request))

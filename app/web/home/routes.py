@@ -10,10 +10,10 @@ from fastapi import APIRouter, Request, Response
 from app.catalogue.routes.faults import list_catalogue_faults
 from app.catalogue.routes.templates import Search, list_templates
 from app.catalogue.schemas.templates import TemplateSummary
+from app.designs.gallery.gallery import offered
 from app.designs.routes.designs import list_designs, show_measurements
 from app.designs.routes.labels import list_tags
 from app.solids.routes.models import list_models
-from app.web.gallery.gallery import offered
 from app.web.shared.responses import show
 from app.web.shared.services import PageServices, ThePageServices
 

@@ -6,6 +6,7 @@ import re
 
 from fastapi import APIRouter, Depends, Request, Response
 
+from app.http.uploads import UploadRoute
 from app.imported_models.routes import FileName, NewId, list_programs
 from app.web.shared.file_form import FileForm, Upload
 from app.web.shared.multipart import forms_with_files
@@ -47,7 +48,7 @@ FORM = FileForm(
     _programs,
 )
 router = APIRouter(include_in_schema=False)
-forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_with_files)])
+forms = APIRouter(include_in_schema=False, route_class=UploadRoute, dependencies=[Depends(forms_with_files)])
 
 
 @router.get(FORM.path)

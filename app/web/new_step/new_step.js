@@ -5,6 +5,7 @@ import { Names } from "../design/names.js";
 import { startPicker } from "../design/picker.js";
 import { startLists } from "../lists/lists.js";
 import { live } from "../shared/live.js";
+import { startSuggestions } from "../shared/suggestions.js";
 import { showFaults } from "../shared/results.js";
 import { nameOf, patchOf } from "../shared/typed.js";
 
@@ -71,6 +72,7 @@ const checking = live(asked, () => {
 
 async function start() {
   startLists();
+  startSuggestions(form);
   form.addEventListener("input", checking.ask);
   if (fields.some(({ value, defaultValue }) => value && value !== defaultValue)) checking.ask(); // typed before this script ran
   const own = fields.filter(({ name }) => !name.includes("@")).map(({ name, labels }) => ({ name, role: "input", words: labels[0]?.textContent ?? "", unit: "", value: "" }));

@@ -108,7 +108,7 @@ async def _imported(
     """
     id = typed.get("id", "")
     content = json.dumps(manifest, ensure_ascii=False, indent=1).encode()
-    job = await FORM.begun(services, content, id, f"{id[:64] or 'assembly'}.json")
+    job = await FORM.begun(services, memoryview(content), id, f"{id[:64] or 'assembly'}.json")
     for _ in range(round(PATIENCE / GLANCE)):
         work = await job_of(services, job)
         if work.problem is not None:

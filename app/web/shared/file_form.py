@@ -56,7 +56,7 @@ class FileForm:
     page: str
     choose: str
     upload: type[Upload]
-    begin: Callable[[PageServices], Callable[[bytes, str, str, Once], str]]
+    begin: Callable[[PageServices], Callable[[memoryview, str, str, Once], str]]
     address: Callable[[str], str | None]
     context: Callable[[PageServices], Awaitable[dict[str, object]]] = _nothing
 
@@ -90,7 +90,7 @@ class FileForm:
             return await self._form(request, services, id, refused.sentence, refused.status)
         return go(f"{self.path}?job={job}&id={id}")
 
-    async def begun(self, services: PageServices, content: bytes, id: str, name: str) -> str:
+    async def begun(self, services: PageServices, content: memoryview, id: str, name: str) -> str:
         """Begin the import of a file, and return its job.
 
         Raises

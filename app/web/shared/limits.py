@@ -14,9 +14,13 @@ from app.catalogue.schemas.templates import Template
 from app.presentation.input_text import text_of, value_of
 from app.reference import Reference
 from app.schemas.values import Given
+from app.web.engine_bearings.layouts import usual_orders
 from app.web.shared.forms import LIMITS
 from app.web.shared.services import PageServices
 from app.web.shared.sheet import Field
+
+FIRING_ORDER, OF_EACH_CYLINDER = "firing_order", ("cylinder_positions", "bank_angles")
+"""The input that takes the usual orders of the known layouts, and lists with an item for each cylinder."""
 
 
 def limits_of(filled: Mapping[str, str]) -> dict[str, JsonValue]:
@@ -84,11 +88,20 @@ def _rows(
 
 
 def with_rows(fields: Sequence[Field], tables: Sequence[LibraryTable]) -> list[Field]:
-    """Return the fields of inputs, with suitable rows of the library as suggestions."""
-    filling = [dict(_filling(_tail(one.name), tables)) for one in fields]
+    """Return the fields of inputs with their suggestions: rows of the library, usual firing orders."""
     return [
-        replace(one, suggestions=rows) if rows else one for one, rows in zip(fields, filling, strict=True)
+        _with_orders(one) if _tail(one.name) == FIRING_ORDER else _with_rows(one, tables) for one in fields
     ]
+
+
+def _with_orders(one: Field) -> Field:
+    head = one.control.removesuffix(FIRING_ORDER)
+    return replace(one, suggestions=usual_orders(), beside=tuple(head + name for name in OF_EACH_CYLINDER))
+
+
+def _with_rows(one: Field, tables: Sequence[LibraryTable]) -> Field:
+    rows = dict(_filling(_tail(one.name), tables))
+    return replace(one, suggestions=rows) if rows else one
 
 
 def _tail(name: str) -> str:

@@ -39,6 +39,7 @@ class Field:
     assumed: str = ""  # source of a proposed value that is still in use
     labels: Mapping[str, str] = field(default_factory=dict)  # words of the options
     suggestions: Mapping[str, str] = field(default_factory=dict)  # suggested texts, each with its meaning
+    beside: tuple[str, ...] = ()  # controls of lists that have as many items as the suggestion that fits
 
     @property
     def id(self) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from math import inf
+from typing import NamedTuple
 
 from fastapi import Request, Response
 from pydantic import JsonValue
@@ -14,6 +15,7 @@ from app.designs.routes.variants import variants_of
 from app.designs.schemas.designs import Design, RevisionWorksheet
 from app.designs.schemas.network import DesignNetwork, NetworkName
 from app.designs.variants.names import BASE, natural
+from app.presentation.criteria import limit_of, subject_of
 from app.presentation.input_text import text_of, value_of
 from app.reference import Reference
 from app.schemas.criteria import Criterion
@@ -180,7 +182,7 @@ async def study_form(
         judged=judged,
         listed_first=judged | _main_results(revision, network),
         grouped=_by_step(named),
-        criteria=[(one.name, one.require, has_limit(one)) for one in revision.criteria or ()],
+        criteria=[Demand.of(one) for one in revision.criteria or ()],
         methods=METHODS,
         lines=range(LINES),
         typed=typed.with_bounds(bounds),
@@ -199,6 +201,22 @@ async def _governing(services: PageServices, design: Design) -> str:
         await services.run(variants_of, design.id, None, services.database, services.catalogues)
     ).governing
     return worst.variant if worst and worst.variant != BASE else ""
+
+
+class Demand(NamedTuple):
+    """A criterion that a row must meet, in words."""
+
+    name: str
+    subject: str
+    limit: str
+    require: str
+    has_limit: bool
+
+    @classmethod
+    def of(cls, one: Criterion) -> Demand:
+        """Return a criterion of the design."""
+        subject, limit = subject_of(one.name, one.require), limit_of(one.require)
+        return cls(one.name, subject, limit, one.require, has_limit(one))
 
 
 def has_limit(criterion: Criterion) -> bool:

@@ -4,6 +4,7 @@ import { Refused, call, units } from "../shared/api.js";
 import { calculated } from "../shared/calculation.js";
 import { isolated } from "../shared/isolated.js";
 import { startLists } from "../lists/lists.js";
+import { startSuggestions } from "../shared/suggestions.js";
 import { live } from "../shared/live.js";
 import { drawPictures, whenSeen } from "../plots/pictures.js";
 import { OUTDATED, markOutdated, showFaults, showResults } from "../shared/results.js";
@@ -76,6 +77,7 @@ function keepInAddress(filled) {
 }
 
 startLists();
+startSuggestions();
 const preview = live(tried, show, refuse);
 form.addEventListener("input", () => {
   keepInAddress([...new FormData(form)].filter(([, text]) => text.trim()));

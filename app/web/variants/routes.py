@@ -58,7 +58,7 @@ async def save_pasted(id: Id, request: Request, services: ThePageServices) -> Re
 async def save_file(id: Id, request: Request, services: ThePageServices) -> Response:
     """Save a table from a spreadsheet file."""
     parts = await parts_of(request)
-    content = parts["file"].content if "file" in parts else b""
+    content = bytes(parts["file"].content) if "file" in parts else b""
     revision = parts["revision"].text if "revision" in parts else ""
     return await _saved(
         request, services, id, _Upload(content, "xlsx" if content[:2] == b"PK" else "csv", revision)

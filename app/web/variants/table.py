@@ -243,9 +243,7 @@ def _criteria(out: VariantsOut) -> tuple[list[str], list[str]]:
 
 def _title(out: VariantsOut, name: str) -> str:
     judged = [*out.rows, *([out.base] if out.base else [])]
-    first = next(one for row in judged for one in row.criteria if one.name == name)
-    about = line(first)
-    return f"{about.step}: {about.title}" if about.step else about.title
+    return next(line(one).subject for row in judged for one in row.criteria if one.name == name)
 
 
 def _outcome(design: Design, out: VariantsOut, row: VariantResult, names: Sequence[str]) -> Outcome:

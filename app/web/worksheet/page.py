@@ -16,6 +16,7 @@ from app.worksheets import check
 from app.worksheets.bodies import SheetCheckIn
 from app.worksheets.routes.worksheets import list_worksheets
 from app.worksheets.schemas.worksheets import SheetCheck, SheetFault, SheetLine, SheetSummary
+from templates.core.sheets.design_lines import ONLY_IN_DESIGNS
 from templates.examples.index import examples
 
 EQUALS = "<mo>&#x0003D;</mo>"  # in MathML
@@ -95,6 +96,7 @@ async def editor_page(
         theirs=sheet.text if unsaved and unsaved.is_conflict else None,
         notice=unsaved.notice if unsaved else notice,
         checked=checked,
+        refused=ONLY_IN_DESIGNS,
         checked_json=checked.model_dump_json(exclude={"template"}),
         rows=rows(checked),
         listing=listing(text, checked.faults),

@@ -6,6 +6,7 @@ export class SheetNames {
   constructor(text) {
     this.text = text;
     this.names = [];
+    this.refused = new Set(text.area.dataset.refused.split(" ")); // statements that this text cannot have
   }
 
   // Return the names that the service read, or the previous ones if it could not read the text.
@@ -21,7 +22,8 @@ export class SheetNames {
 
   matching(field) {
     const word = this.word(field);
-    return word ? completions(word, [...this.names, ...declared(field.value, new Set(this.names.map(({ name }) => name)), word)]) : [];
+    const items = word ? completions(word, [...this.names, ...declared(field.value, new Set(this.names.map(({ name }) => name)), word)]) : [];
+    return word?.kind === "statement" ? items.filter(({ name }) => !this.refused.has(name)) : items;
   }
 
   fits = () => true;

@@ -7,12 +7,13 @@ export const STATEMENTS = {
   require: "what must hold, else the input is refused",
   check: "what should hold, else a warning",
   test: "a known result: test \"by hand\" with F = 25 kN gives p = 21.7 MPa within 0.2 %",
+  plot: "one value over another: plot p over F",
 };
 const INSIDE = ["if", "not"];
 const BETWEEN = ["then", "else", "and", "or", "is", "to", "so that", "from", "with", "gives", "within", "over"];
 const CLAUSES = ["source", "symbol", "remedy", "also", "example", "published", "held"];
 const FUNCTIONS = ["sqrt", "exp", "log", "log10", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "abs", "floor", "ceil", "min", "max", "sum", "mean", "count"];
-const WORDS = new Set([...Object.keys(STATEMENTS), "plot", ...INSIDE, ...BETWEEN, "so", "that"]);
+const WORDS = new Set([...Object.keys(STATEMENTS), ...INSIDE, ...BETWEEN, "so", "that"]);
 const UNITS = (
   "mm cm m um in ft mil N kN MN lbf Pa kPa MPa GPa bar psi N*m kN*m J kJ W kW hp kg g t kg/m**3 s min h rpm rad/s rev/s turn deg rad " +
   "Hz m/s mm/s m/s**2 mm**2 m**2 mm**3 m**3 mm**4 K degC degF delta_degC delta_degF 1/K Pa*s mPa*s mm**2/s cSt l/min W/(m*K) J/(kg*K) A V % 1"
@@ -54,9 +55,9 @@ function kindAfter(before, above) {
   if (before === "") return "statement";
   if (/(^|\s)\[[^\]]*$/.test(before) || new RegExp(String.raw`(^|[^\p{L}\p{N}_.])${NUMBER} $`, "u").test(before)) return "unit";
   if (/"[^"]*"\s*\([^)]*(^|[(;]\s*)$/.test(before)) return "clause";
-  const isExpression = /^\s/.test(before) ? above !== "" : /=|^(require|check|solve|test)\b/.test(before);
+  const isExpression = /^\s/.test(before) ? above !== "" : /=|^(require|check|solve|test|plot)\b/.test(before);
   if (!isExpression) return null;
-  return /[\p{L}\p{N}_.)\]"%]\s+$/u.test(before) && !/(^|\s)(if|then|else|and|or|not|is|require|check|solve|from|to|that|with|gives|within)\s+$/.test(before) ? "between" : "name";
+  return /[\p{L}\p{N}_.)\]"%]\s+$/u.test(before) && !/(^|\s)(if|then|else|and|or|not|is|require|check|solve|plot|over|from|to|that|with|gives|within)\s+$/.test(before) ? "between" : "name";
 }
 
 const worded = (names, words) => names.map((name) => ({ name, unit: "", words }));

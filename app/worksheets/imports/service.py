@@ -43,7 +43,7 @@ class Imports:
         self.store, self.jobs = store, jobs
         self.catalogues, self.worksheets = catalogues, worksheets
 
-    def begin(self, content: bytes, id: str, file: str, once: Once) -> str:
+    def begin(self, content: memoryview, id: str, file: str, once: Once) -> str:
         """Queue the import of a file as a worksheet and return the id of the job.
 
         Raises

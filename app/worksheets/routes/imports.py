@@ -6,9 +6,9 @@ from typing import Annotated
 
 from fastapi import APIRouter, Depends, Query, Request, Response
 
-from app.api.dependencies import TheImports, TheOnce, TheStore, TheThreads, TheWorksheets
+from app.api.dependencies import TheIdentity, TheImports, TheOnce, TheStore, TheThreads, TheWorksheets
 from app.api.file_answers import UNCHANGED, StoredFile
-from app.api.responses import LATER, accepted
+from app.api.responses import FILE_LATER, file_accepted
 from app.http.strict_requests import SHEET_TYPES, StrictRoute, require_sheet
 from app.schemas.problems import refusals
 from app.storage.errors import NotFound
@@ -30,13 +30,14 @@ FileName = Annotated[str, Query(max_length=200, pattern=NAME, description="name 
 @router.post(
     "/import",
     status_code=202,
-    responses={**LATER, **refusals(409, 429)},
+    responses={**FILE_LATER, **refusals(409, 429)},
     openapi_extra=BODY,
     dependencies=[Depends(require_sheet)],
 )
 async def import_worksheet(
     request: Request,
     imports: TheImports,
+    identity: TheIdentity,
     threads: TheThreads,
     once: TheOnce,
     id: NewId,
@@ -48,7 +49,8 @@ async def import_worksheet(
     /worksheets/{id}/import` lists the outcome of every region of the sheet.
     """
     body = await request.body()
-    return accepted(await threads.run(imports.begin, body, id, file, once))
+    job = await threads.run(imports.begin, memoryview(body), id, file, once)
+    return await threads.run(file_accepted, job, identity)
 
 
 @router.get("/{id}/import", responses=refusals(404))

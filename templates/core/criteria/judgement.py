@@ -206,7 +206,12 @@ def _in_words(text: str) -> str:
 
 def _name(text: str) -> str:
     """Return the labels of names without their steps, and numbers with the printed form of their units."""
-    return text if _is_number(text) else _TERM.sub(_label, text)
+    return text if _is_number(text) else in_words(text)
+
+
+def in_words(text: str) -> str:
+    """Return a side of a comparison with the labels of its names and the printed form of its units."""
+    return _TERM.sub(_label, text)
 
 
 def _label(term: re.Match[str]) -> str:

@@ -22,6 +22,11 @@ _INSTEAD = {
     "test": ("a test", 'write the expected value as a check, such as `check h >= 3 um "by hand"`'),
 }
 
+NOT_IN_DESIGNS = tuple(_INSTEAD)
+"""Kinds of statements that the worksheet of a design refuses."""
+ONLY_IN_DESIGNS = ("plot",)
+"""Kinds of statements that every other worksheet refuses."""
+
 
 @dataclass(frozen=True)
 class Plot:

@@ -9,7 +9,7 @@ from typing import Any
 
 import pint
 
-from templates.core.units.units import base_text, radians, registry, unit
+from templates.core.units.units import CUSTOMARY, base_text, radians, registry, unit
 
 ONE = registry.Unit("")
 Temperatures = frozenset[float] | None
@@ -58,7 +58,7 @@ class Kind:
         If this unit is read again, it gives the same kind.
         """
         if not self._is_kelvin or self.temperatures is None:
-            return base_text(self)
+            return CUSTOMARY.get(text := base_text(self), text)
         if 0.0 in self.temperatures:
             return "K" if 1.0 in self.temperatures else "delta_degC"
         return "degC" if 1.0 in self.temperatures else "K"

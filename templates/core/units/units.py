@@ -201,6 +201,13 @@ def _named() -> dict[pint.Unit, str]:
     return {registry.Unit(registry.get_base_units(name)[1]): name for name in names}
 
 
+CUSTOMARY = {
+    "m": "mm", "m**2": "mm**2", "m**3": "cm**3", "m**4": "mm**4", "kg*m": "kg*mm", "Pa": "MPa",
+    "N/m": "kN/mm",
+}  # fmt: skip
+"""The unit in which engineers state what a relation gives in an SI unit, where they prefer another one."""
+
+
 def is_rate(base: pint.Unit) -> bool:
     """Return whether base units are a power of time, possibly multiplied by angles."""
     return dict(registry.get_dimensionality(base)).keys() == {"[time]"}

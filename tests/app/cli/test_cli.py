@@ -92,6 +92,11 @@ class TestTemplates:
         ):
             assert part in output
 
+    def test_show_of_an_output_that_is_a_text(self):
+        result = run("template", "show", "oil_film", "--version", "2")
+        assert result.exit_code == 0
+        assert "boundary_condition" in result.output
+
     def test_freeze_writes_once(self, tmp_path):
         arguments = ("freeze", "oil_film", "1", "--folder", str(tmp_path))
         assert run(*arguments).exit_code == 0

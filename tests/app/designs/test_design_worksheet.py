@@ -265,3 +265,11 @@ def test_copies_comparisons_and_restored_revisions_have_the_lines(http):
     copy = http.post(f"{path}/copy", json={}, headers={"Prefer": "wait=60"}).json()
     assert copy["worksheet"] == TEXT
     assert changed["revision"] == 2
+
+
+def test_lines_beyond_the_limit_are_refused_with_their_number_and_a_remedy(http):
+    said = details(refused(http, "# x\n" * 4097))["worksheet"]
+    assert said.startswith(
+        "the lines have 16388 characters, and a design takes at most 16384; put the longer"
+    )
+    assert refused(http, "# x\n" * 4096).status_code < 300

@@ -5,7 +5,7 @@ from engines import bearings_of, four_cylinders
 from serving import API, created, faults, patched, problem, revision
 from study_helpers import done, rows
 
-from app.web.gallery.gallery import GALLERY
+from app.designs.gallery.gallery import GALLERY
 
 SHAFT = f"{API}/models/crankshaft/versions/1"
 PLAIN = {"journal_diameter": "40 mm", "throw": "30 mm", "fillet": "0 mm"}

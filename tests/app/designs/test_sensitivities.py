@@ -8,9 +8,7 @@ from row_designs import CATALOGUES, CURVES, calculated, ref
 
 from app.designs import sensitivities as module
 from app.designs.document import Document
-from app.designs.engine.calculate import calculate
 from app.designs.explanation import explained
-from app.designs.graph import build_graph
 from app.designs.slopes import Local, slopes_at
 from app.schemas.slopes import slope_in
 from app.storage.errors import NotFound
@@ -186,23 +184,6 @@ SHELL = {
         },
     },
 }
-
-
-def measured(shape):
-    return {"mass": 0.2}
-
-
-def test_what_acts_through_a_solid_has_a_reason_and_the_rest_has_slopes():
-    graph, faults = build_graph(Document.model_validate(SHELL), CATALOGUES)
-    assert not faults
-    built = calculate(graph, measured, lambda *question: None)
-    chain = asked(SHELL, "sleeve.inner_diameter", built)
-    by_name = {item.name: item for item in chain.sensitivities}
-    assert by_name.keys() == {"play", "bore", "shell.wall"}
-    assert (by_name["play"].slope.value, by_name["play"].reason) == (pytest.approx(100), None)
-    for name in ("bore", "shell.wall"):
-        assert by_name[name].slope is None
-        assert "solid of shell" in by_name[name].reason
 
 
 def test_a_value_that_waits_for_its_solid_has_no_slopes():

@@ -128,8 +128,8 @@ def test_a_chain_of_parameters_may_be_long():
     raw = document({"end": {"require": "p399 >= 2.6 um"}}, parameters=parameters)
     end = verdicts(raw)["end"]
     alone = verdicts(document({"end": {"require": "film.minimum_film_thickness >= 2.6 um"}}))["end"]
-    assert (end.verdict, end.unit) == ("met", "m")
-    assert np.array(end.band) * 1e6 == pytest.approx(alone.band)
+    assert (end.verdict, end.unit) == ("met", "mm")
+    assert np.array(end.band) * 1e3 == pytest.approx(alone.band)
 
 
 def test_only_so_many_outputs_are_carried_and_the_others_are_named():

@@ -45,3 +45,19 @@ def test_what_is_not_clear_is_refused_in_its_cell(rows, where, code):
     with pytest.raises(InvalidInputs) as caught:
         read(*rows)
     assert [(fault.name, fault.code) for fault in caught.value.faults] == [(where, code)]
+
+
+@pytest.mark.parametrize(
+    ("typed", "name"),
+    [
+        ("main 1", "main_1"),
+        ("pin +10 %", "pin_plus_10_percent"),
+        ("throw +1.5 mm", "throw_plus_1_point_5_mm"),
+        ("throw −1,5 mm", "throw_minus_1_point_5_mm"),
+        ("width -2 mm", "width_minus_2_mm"),
+        ("crank-pin", "crank_pin"),
+        ("face 1.4°", "face_1_point_4_deg"),
+    ],
+)
+def test_a_row_is_named_as_people_write_it(typed, name):
+    assert read(["variant", "width"], ["unit", "mm"], [typed, "5"]) == {name: {"width": "5 mm"}}

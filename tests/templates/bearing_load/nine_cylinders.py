@@ -1,7 +1,9 @@
 """The nine-cylinder generator set of DYREMI: the known inputs, and the printed results."""
 
 import json
-from pathlib import Path
 
-_CASE = json.loads(Path(__file__).parents[2].joinpath("references/nine_cylinder_set.json").read_text())
-INPUTS, PRINTED = _CASE["inputs"], {name: reported["value"] for name, reported in _CASE["printed"].items()}
+from benchmarks.validation.case import numbers
+from benchmarks.validation.reference import FOLDER, reference
+
+INPUTS = json.loads((FOLDER / "nine_cylinder_set.json").read_text(encoding="utf-8"))["inputs"]
+PRINTED = numbers(reference("nine_cylinder_set.csv").rows[0])

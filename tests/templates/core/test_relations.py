@@ -125,6 +125,25 @@ class TestUnits:
         assert registry.get_dimensionality(result.base) == registry.get_dimensionality(unit(measured).base)
 
     @pytest.mark.parametrize(
+        ("text", "shown"),
+        [
+            ("= scale * d", "mm"),
+            ("= d * d", "mm**2"),
+            ("= d ** 3", "cm**3"),
+            ("= 5 kN / d ** 2", "MPa"),
+            ("= 5 kN / d", "kN/mm"),
+            ("= 2 kg * d", "kg*mm"),
+            ("= 2 N * scale", "N"),
+            ("= 2 N * d", "N*m"),
+            ("= scale", "1"),
+        ],
+    )
+    def test_a_calculated_value_is_in_the_unit_that_engineers_use(self, text, shown):
+        result = kind(text, d=LENGTH, scale=PURE)
+        assert result.unit == shown
+        assert unit(shown).base == result.base
+
+    @pytest.mark.parametrize(
         ("text", "words"),
         [
             ("= d + 1", "+ needs equal units"),

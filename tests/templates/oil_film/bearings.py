@@ -18,7 +18,7 @@ D, PSI, ETA, OMEGA = 0.1, 1e-3, 0.02, 100.0
 def table(name):
     lines = (REFERENCES / name).read_text(encoding="utf-8").splitlines()
     rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
-    return {key: np.array([float(row[key]) for row in rows]) for key in rows[0]}
+    return {key: np.array([float(row[key] or "nan") for row in rows]) for key in rows[0]}
 
 
 def si(value, unit):

@@ -1,7 +1,7 @@
-"""`oil_film` 2: literature at every level, statics of forces and speeds.
+"""`oil_film` 2: literature at other levels than the default, statics of forces and speeds.
 
-Tables: Butenschön 1976 (the converged film of the standards; printed So is low by up to 0.55 % at eps 0.99),
-Raimondi & Boyd 1958 (about 1.5 %, 3 % at eps 0.97), in tests/references with their definitions.
+Tables at the default level are cases of docs/validation.md. The one of Butenschön (the converged film; its
+printed So is low by up to 0.55 % at eps 0.99) is in tests/references with its definitions.
 """
 
 import numpy as np
@@ -16,14 +16,14 @@ from templates.physics.films.short_bearing import attitude_Ocvirk_1952
 
 
 class TestLiterature:
-    @pytest.mark.parametrize(("level", "film", "angle"), [("map", 0.012, 0.12), ("fit", 0.1, 3.0)])
-    def test_literature_butenschoen_1976(self, level, film, angle):
+    def test_literature_butenschoen_1976_by_the_fit(self):
         rows = table("static_film_butenschoen_1976.csv")
         inside = (rows["width_ratio"] >= 0.125) & (rows["width_ratio"] <= 1)
         rows = {name: values[inside] for name, values in rows.items()}
-        result = outputs(bearing(rows["So"], rows["width_ratio"]), level=level)
-        np.testing.assert_allclose(1 - result["relative_eccentricity"], 1 - rows["eps"], rtol=film)
-        np.testing.assert_allclose(result["attitude_angle"], rows["beta_deg"], atol=angle)
+        result = outputs(bearing(rows["So"], rows["width_ratio"]), level="fit")
+        np.testing.assert_allclose(1 - result["relative_eccentricity"], 1 - rows["eps"], rtol=0.1)
+        printed = np.isfinite(rows["beta_deg"])
+        np.testing.assert_allclose(result["attitude_angle"][printed], rows["beta_deg"][printed], atol=3.0)
 
     def test_literature_butenschoen_1976_at_full_solution(self):
         rows = table("static_film_butenschoen_1976.csv")
@@ -31,11 +31,6 @@ class TestLiterature:
         result = outputs(bearing(rows["So"][some], rows["width_ratio"][some]), level="reynolds")
         np.testing.assert_allclose(1 - result["relative_eccentricity"], 1 - rows["eps"][some], rtol=0.012)
         np.testing.assert_allclose(result["attitude_angle"], rows["beta_deg"][some], atol=0.12)
-
-    def test_literature_raimondi_boyd_1958(self):
-        rows = table("raimondi_boyd_1958.csv")
-        friction = outputs(bearing(1 / (2 * np.pi * rows["S"]), rows["length_ratio"]), "friction_coefficient")
-        np.testing.assert_allclose(friction / PSI, rows["friction"], rtol=0.04)
 
     def test_literature_short_bearing_with_numbers(self):
         """R 50 mm, L 25 mm, 100 µm radial, 20 mPa s, 1 kN, 3000 rpm: shared reference, after Ocvirk."""
@@ -71,25 +66,6 @@ class TestLiterature:
         for temperature, viscosity in (("40 degC", at_40), ("100 degC", at_100)):
             raw = case(oil_inlet_temperature=temperature, oil_outlet_temperature=temperature, oil_grade=grade)
             assert outputs(raw, "kinematic_viscosity") == pytest.approx(viscosity, rel=1e-12)
-
-    def test_literature_lund_thomsen_1978(self):
-        """Two axial grooves of 20° at ±90° to the load: eccentricity, attitude, all coefficients."""
-        rows = table("lund_thomsen_1978.csv")
-        grooves = {"value": [[90, 20], [270, 20]], "unit": "deg"}
-        So = 1 / (2 * np.pi * rows["S"])
-        for i in range(len(So)):
-            result = outputs(bearing(float(So[i]), float(rows["length_ratio"][i]), grooves=grooves))
-            assert result["relative_eccentricity"] == pytest.approx(rows["eps"][i], abs=0.002)
-            assert result["attitude_angle"] == pytest.approx(rows["phi_deg"][i], abs=0.3)
-            unit = (
-                So[i] * rows["length_ratio"][i] * 2 * ETA * OMEGA * D / PSI**3
-            )  # load over radial clearance
-            for xy in ("xx", "xy", "yx", "yy"):
-                over_load = result[f"stiffness_{xy}"] / unit
-                assert over_load == pytest.approx(rows[f"K{xy}"][i], rel=0.05, abs=0.03), xy
-            for xy in ("xx", "xy", "yy"):
-                over_load = result[f"damping_{xy}"] * OMEGA / unit
-                assert over_load == pytest.approx(rows[f"B{xy}"][i], rel=0.05, abs=0.03), xy
 
     @pytest.mark.parametrize(
         ("d", "rpm", "film"), [(50, 300, 3), (50, 5000, 7), (100, 100, 4), (500, 3000, 16)]

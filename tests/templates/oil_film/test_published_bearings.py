@@ -1,16 +1,12 @@
-"""Published engine bearings, a load diagram and friction over speed; tests/references has the sources."""
-
-from pathlib import Path
+"""A published engine bearing with its load diagram; tests/references has the source."""
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from benchmarks.published_friction import curves, rows
+from benchmarks.validation.reference import reference
 from templates.core.language.evaluate import evaluate
 from templates.oil_film.oil_film_cycle_v1 import OilFilmCycle
-
-REFERENCES = Path(__file__).parents[2] / "references"
 
 
 class TestLoadDiagram:
@@ -22,7 +18,8 @@ class TestLoadDiagram:
     @classmethod
     def load(cls, degrees):
         """Linear between the points of the diagram [N]."""
-        angle, force = np.array(rows(REFERENCES / "flores_2006_load.csv")).T
+        diagram = reference("flores_2006_load.csv").rows
+        angle, force = np.array([(row["angle_deg"], row["load_kN"]) for row in diagram], dtype=float).T
         return 1e3 * np.interp(degrees, angle, force, period=720)
 
     @classmethod
@@ -59,20 +56,3 @@ class TestLoadDiagram:
             self.film(level)["minimum_film_thickness"].value for level in ("mobility", "mobility_short")
         )
         assert 0.7 < thin / thick < 1
-
-
-class TestFrictionOverSpeed:
-    """The rig of Sander et al. 2016: a big end between two supports that bear half its load each."""
-
-    def test_literature_branch_of_the_oil(self):
-        """Within 3 % at 5 MPa from 400 rpm on; at 10 MPa, where the walls give way, within 14 %."""
-        for pressure, rpm, published, found in curves(REFERENCES / "sander_2016_friction_torque.csv"):
-            fluid = rpm >= {5: 400, 10: 500}[pressure]
-            assert found[fluid] == pytest.approx(published[fluid], rel={5: 0.03, 10: 0.14}[pressure])
-
-    def test_literature_branch_of_the_contact_rises_but_by_less(self):
-        """Gaps count from the mean lines here; in the paper from the summits, 0.6 um nearer."""
-        for _, rpm, published, found in curves(REFERENCES / "sander_2016_friction_torque.csv"):
-            slow = rpm.argmin()
-            assert found.min() < found[slow] < published[slow]
-            assert rpm[found.argmin()] <= rpm[published.argmin()]

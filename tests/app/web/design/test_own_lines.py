@@ -6,6 +6,8 @@ from browsing import created
 from playwright.sync_api import expect
 from serving import API
 
+from templates.core.sheets.design_lines import NOT_IN_DESIGNS
+
 LINE = 'r [1] = film.minimum_film_thickness / 2 um "film ratio"'
 
 
@@ -74,6 +76,26 @@ def test_names_of_the_design_are_completed_in_a_line(watched, design):
     expect(option).to_contain_text("film.minimum_film_thickness")
     area.press("Enter")
     expect(area).to_have_value("r [1] = film.minimum_film_thickness")
+
+
+@pytest.mark.slow
+def test_completion_offers_the_statements_that_a_design_takes(watched, design):
+    page = opened(watched, design)
+    area, options = text_of(page), page.locator("#completions [role=option]")
+    for statement in ("check", "curve", "plot", "solve"):
+        area.fill("")
+        area.press_sequentially(statement[:2])
+        expect(options.first).to_contain_text(statement)
+    for statement in NOT_IN_DESIGNS:
+        area.fill("")
+        area.press_sequentially(statement[:3])
+        expect(page.locator("#completions"), statement).to_be_hidden()
+    area.fill("")
+    for typed in ("plot film.minimum_film", " ov", " film.minimum_film"):
+        area.press_sequentially(typed)
+        expect(page.locator("#completions"), typed).to_be_visible()
+        area.press("Enter")
+    expect(area).to_have_value("plot film.minimum_film_thickness over film.minimum_film_thickness")
 
 
 @pytest.mark.slow

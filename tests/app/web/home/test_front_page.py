@@ -9,6 +9,8 @@ from app.web.home.routes import each_once
 
 SQUARE = '<svg xmlns="http://www.w3.org/2000/svg" width="4" height="4"/>'
 
+LONGEST = 5000  # height of the page [pixels]
+
 
 def version(id: str, number: int, *, latest: bool) -> TemplateSummary:
     return TemplateSummary(id=id, version=number, title=id, summary="", status="released", latest=latest)
@@ -36,6 +38,7 @@ def test_the_front_page_begins_with_what_one_can_do(watched, width):
     assert ids
     assert len(ids) == len(set(ids))
     assert page.evaluate("document.documentElement.scrollWidth") <= width
+    assert page.evaluate("document.documentElement.scrollHeight") < LONGEST
     page.get_by_role("link", name="New design").click()
     expect(page.locator(".new-design input[name=name]")).to_be_visible()
     assert Axe().run(page, options={"resultTypes": ["violations"]}).response["violations"] == []

@@ -133,3 +133,23 @@ def test_a_new_design_takes_lists_as_people_type_them(watched):
     expect(page.locator("#engine-firing_order-error")).to_be_hidden()
     expect(page.locator("[data-list='engine.firing_order'] [data-paste-table]")).to_be_attached()
     assert Axe().run(page, options={"resultTypes": ["violations"]}).response["violations"] == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("positions", "shown"),
+    [
+        ("0 88 176 264 mm", "1-3-4-2 (in-line four)"),
+        ("0 0 90 90 180 180 mm", "1-2-3-4-5-6 (V6, 60°"),
+    ],
+)
+def test_a_firing_order_is_proposed_for_as_many_cylinders_as_are_typed(watched, positions, shown):
+    page = watched.page
+    watched.open("/designs/new?design_name=four&template=engine/1")
+    order = page.locator("[name='engine.firing_order']")
+    expect(order).to_have_attribute("placeholder", "such as [1, 2]")
+    field = page.locator("[name='engine.cylinder_positions']")
+    field.fill(positions)
+    expect(order).to_have_attribute("placeholder", re.compile(re.escape(shown)))
+    field.fill("")
+    expect(order).to_have_attribute("placeholder", "such as [1, 2]")

@@ -170,6 +170,7 @@ def test_the_rows_on_the_page_and_in_the_files_have_equal_numbers(http, grid):
         "Power loss [W]",
     ]
     assert lines[1][1:5] == table.heads
+    assert (lines[0][5], lines[1][5]) == ("Film: minimum film thickness (thick enough)", "thick_enough")
     assert [[float(cell) for cell in line[1:5]] for line in lines[2:22]] == list(table.rows.values())
     sheet = load_workbook(io.BytesIO(http.get(f"{API}{study}/rows.xlsx").content)).active
     assert [cell.value for cell in sheet[1]] == lines[0]

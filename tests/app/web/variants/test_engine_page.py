@@ -7,7 +7,7 @@ from playwright.sync_api import expect
 from serving import API
 from test_true_pages import assert_true
 
-from app.web.gallery.gallery import GALLERY
+from app.designs.gallery.gallery import GALLERY
 
 pytestmark = pytest.mark.slow  # ten films are marched
 

@@ -297,10 +297,10 @@ def test_a_table_based_on_an_old_revision_is_shown_again(http, two):
 
 def test_a_refused_table_offers_one_new_column_however_often_it_is_sent(http, shell):
     typed = {"revision": "1", "cell.A1": "variant", "cell.B1": "film.radial_load", "cell.B2": "kN"}
-    typed |= {"cell.A3": "load +10 %", "cell.B3": "33", "cell.C1": "", "cell.C2": "", "cell.D1": ""}
+    typed |= {"cell.A3": "10 % load", "cell.B3": "33", "cell.C1": "", "cell.C2": "", "cell.D1": ""}
     answer = http.post(f"{shell}/variants", data=typed)
     assert answer.status_code == 422
-    assert "&#39;load +10 %&#39; is not a name" in answer.text
+    assert "&#39;10 % load&#39; is not a name" in answer.text
     assert answer.text.count('placeholder="+ input"') == 2  # of the load, and a new one
 
 

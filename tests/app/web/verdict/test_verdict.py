@@ -9,7 +9,7 @@ from judging import CRITERIA, MET, UNCHECKED, UNDECIDED, WORST, verdict
 from playwright.sync_api import expect
 from serving import API
 
-from app.presentation.criteria import line, margin, step_of, title, tone
+from app.presentation.criteria import limit_of, line, margin, subject_of, tone
 from app.schemas.criteria import Criterion, Verdict
 from app.web.shared.responses import jinja
 from app.web.verdict import banner as verdict_of_page
@@ -85,7 +85,7 @@ def test_a_violated_limit_is_worded_as_violated():
     assert margin(above) == "−10 K"
     assert margin(above.in_units("us")) == "−18 Δ°F"
     assert line(above).sentence.startswith("film temperature 120 °C is above 110 °C: not met")
-    assert title(above) == "film temperature"
+    assert line(above).title == "film temperature"
 
 
 def test_a_value_just_below_its_limit_is_not_shown_equal_to_it():
@@ -102,8 +102,8 @@ def test_the_sentence_follows_the_units_that_are_shown():
 
 def test_two_criteria_of_one_value_are_told_apart():
     exists = criterion(WORST, name="film.film_exists", require="minimum_film_thickness >= 0.05 um")
-    assert title(criterion(WORST)) == "minimum film thickness"
-    assert title(exists) == "minimum film thickness (film exists)"
+    assert line(criterion(WORST)).title == "minimum film thickness"
+    assert line(exists).title == "minimum film thickness (film exists)"
 
 
 @pytest.mark.parametrize("one", [WORST, MET])
@@ -115,8 +115,8 @@ def test_an_unknown_error_stands_in_the_verdict_and_is_not_green(one):
 
 
 def test_a_criterion_belongs_to_the_step_whose_value_it_judges():
-    assert [step_of(criterion(one)) for one in CRITERIA] == ["film"] * 4
-    assert step_of(criterion(UNDECIDED, require="scale >= 1")) == ""
+    assert [line(criterion(one)).step for one in CRITERIA] == ["film"] * 4
+    assert line(criterion(UNDECIDED, require="scale >= 1")).step == ""
 
 
 def test_what_was_not_checked_says_what_to_give():
@@ -302,3 +302,13 @@ def test_relations_drive_the_outputs_that_they_name(monkeypatch):
         "film": ["density", "bearing_width"],
         "other": ["power_loss"],
     }
+
+
+def test_a_criterion_is_named_in_words_with_its_limit():
+    assert (
+        subject_of("film.film", "minimum_film_thickness >= permissible_film")
+        == "film: minimum film thickness"
+    )
+    assert subject_of("film.rigid", "bore_deflection <= gap / 2") == "film: bore deflection (rigid)"
+    assert limit_of("bore_deflection <= minimum_film_thickness / 2") == "≤ minimum film thickness / 2"
+    assert limit_of("film.minimum_film_thickness >= 3 um") == "≥ 3 µm"

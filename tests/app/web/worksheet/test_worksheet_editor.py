@@ -76,6 +76,10 @@ def test_the_letters_stand_where_those_of_the_textarea_are(watched, http):
 def test_names_units_and_keywords_are_completed_by_keyboard_and_undone(watched, http):
     area = opened(watched, stored(http, "completed"))
     page = watched.page
+    at_end(area, "pl")  # `plot` draws in designs only
+    expect(page.locator(LIST)).to_be_hidden()
+    area.press("Backspace")
+    area.press("Backspace")
     at_end(area, "gi")
     expect(page.locator(OPTION).first).to_contain_text("given")
     area.press("Enter")

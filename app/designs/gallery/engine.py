@@ -10,9 +10,9 @@ from collections.abc import Sequence
 
 from pydantic import JsonValue
 
-from app.web.engine_bearings.document import SHELL, Bearing, bearings, film_step
-from app.web.gallery import train as gallery_train
-from app.web.gallery.train import THROWS, Train
+from app.designs.gallery import train as gallery_train
+from app.designs.gallery.engine_bearings import SHELL, Bearing, bearings, film_step
+from app.designs.gallery.train import THROWS, Train
 from templates.groups.petrol_engine import IN_LINE_FOUR
 
 FOUR: dict[str, JsonValue] = {**IN_LINE_FOUR, "crank_angle_step": "5 deg", "bore": "= bore"}

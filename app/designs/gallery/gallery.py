@@ -10,8 +10,8 @@ from pydantic import JsonValue
 from app.calculations.bodies import OIL_FILM
 from app.catalogue.schemas.templates import TemplateSummary
 from app.designs.bodies import PAPER, DesignIn
-from app.web.gallery.crank import CRANK
-from app.web.gallery.engine import FOUR_CYLINDERS, V8
+from app.designs.gallery.crank import CRANK
+from app.designs.gallery.engine import FOUR_CYLINDERS, V8
 
 FILM = {**OIL_FILM, "bearing_diameter": "= scale * 48 mm"}
 

@@ -1,0 +1,1 @@
+"""From requirements to the values that meet them, with the proof."""
