@@ -13,6 +13,7 @@ from templates.core.errors import plain
 Kind = Literal["template", "model", "design", "table"]
 Id = Annotated[str, Field(pattern="^[A-Za-z0-9_-]{1,64}$")]
 Text = Annotated[str, Field(max_length=300)]
+Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)*$", max_length=200)]
 Values = dict[Annotated[str, Field(max_length=200)], JsonValue]
 Version = Annotated[int, Field(ge=1, le=10**6)]
 LONGEST_FILE = 16 * 2**20  # characters of a file in base64
@@ -45,7 +46,7 @@ class Explain(Arguments):
     id: Id
     kind: Kind = "template"
     version: Version | SkipJsonSchema[None] = None
-    name: Text | SkipJsonSchema[None] = None
+    name: Name | SkipJsonSchema[None] = None
 
 
 class Evaluate(Arguments):
@@ -59,6 +60,24 @@ class Evaluate(Arguments):
     level: Text | SkipJsonSchema[None] = None
     design: Id | SkipJsonSchema[None] = None
     change: Values = Field({}, description="merge patch of the design")
+
+
+class Answer(Arguments):
+    """A design, its free places and the requirements, as `POST /answer` takes them."""
+
+    design: Id | Values = Field(description="id, gallery name, or document")
+    free: Values = Field(
+        description="{'film.bearing_width': {'between': ['15 mm', '40 mm'], 'step': '1 mm'}}"
+    )
+    require: Annotated[list[Text], Field(max_length=50)] | SkipJsonSchema[None] = Field(
+        None, description="criteria, or 'film.minimum_film_thickness >= 3 um'"
+    )
+    targets: Values = {}
+    minimise: Text | SkipJsonSchema[None] = None
+    maximise: Text | SkipJsonSchema[None] = None
+    others: Values = Field({}, alias="with", description="values that replace those of the design")
+    set_aside: Annotated[list[Text], Field(max_length=10)] = []
+    tolerance: float | SkipJsonSchema[None] = None
 
 
 class Verify(Arguments):

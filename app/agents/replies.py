@@ -8,7 +8,7 @@ import mcp_types as mcp
 from pydantic import BaseModel
 
 from app.calculations.schemas.evaluations import Results
-from app.schemas.answers import Measured
+from app.schemas.answers import Measured, Quantity
 from app.schemas.criteria import Criterion
 from app.solids.schemas.analyses import AnalysisOutput
 from templates.core.errors import plain
@@ -110,13 +110,13 @@ def numbers_of(
 ) -> list[Number]:
     """Return the wanted outputs, then the criteria, worst first, then all other outputs."""
     shown = {
-        name: Number(
-            name=name,
-            value=_value(output),
-            unit=getattr(output, "unit", None),
-            error=_largest(error.get(name)),
-            source=source,
-            verdict=_verdict_of(name, criteria),
+        name: of_value(
+            name,
+            getattr(output, "value", None),
+            getattr(output, "unit", None),
+            _largest(error.get(name)),
+            source,
+            _verdict_of(name, criteria),
         )
         for name, output in outputs.items()
     }
@@ -135,13 +135,13 @@ def of_results(results: Results, wanted: Sequence[str]) -> list[Number]:
 def judged(criteria: Iterable[Criterion], source: str = "criterion") -> list[Number]:
     """Return the criteria that have a value and a limit."""
     return [
-        Number(
-            name=one.name,
-            value=_rounded(one.value.value),
-            unit=one.value.unit,
-            error=one.relative_error if one.error_known else None,
-            source=shortened(one.source or source, LONGEST_SOURCE),
-            verdict=verdict(one),
+        of_value(
+            one.name,
+            one.value.value,
+            one.value.unit,
+            one.relative_error if one.error_known else None,
+            one.source or source,
+            verdict(one),
         )
         for one in criteria
         if one.value is not None and one.verdict != "not_checked"
@@ -151,14 +151,19 @@ def judged(criteria: Iterable[Criterion], source: str = "criterion") -> list[Num
 def verdict(one: Criterion) -> str:
     """Return the verdict on a criterion with its limit; `confirmed` needs a known error and a sure limit."""
     is_sure = one.is_confirmed and one.unverified is None
+    notes = {
+        "error unknown": one.verdict == "met" and not one.error_known,
+        "limit unverified": one.unverified is not None,
+        "waived": one.waived is not None,
+    }
     word = "confirmed" if is_sure else one.verdict.replace("_", " ")
-    notes = [
-        *([f"limit {_rounded(one.limit.value)}{_unit(one.limit.unit)}"] if one.limit else []),
-        *(["error unknown"] if one.verdict == "met" and not one.error_known else []),
-        *(["limit unverified"] if one.unverified else []),
-        *(["waived"] if one.waived else []),
-    ]
-    return f"{word} ({', '.join(notes)})" if notes else word
+    return limited(word, one.limit, [note for note, holds in notes.items() if holds])
+
+
+def limited(word: str, limit: Quantity | None, notes: Sequence[str]) -> str:
+    """Return a verdict with its limit and notes in brackets."""
+    limits = [f"limit {_rounded(limit.value)}{_unit(limit.unit)}"] if limit else []
+    return f"{word} ({', '.join([*limits, *notes])})" if limits or notes else word
 
 
 def _unit(unit: str | None) -> str:
@@ -171,8 +176,18 @@ def _verdict_of(output: str, criteria: Iterable[Criterion]) -> str:
     return next((verdict(one) for one in own), "no limit")
 
 
-def _value(output: Measured | AnalysisOutput) -> Plain:
-    value: object = getattr(output, "value", None)
+def of_value(
+    name: str, value: object, unit: str | None, error: float | None, source: str, verdict: str
+) -> Number:
+    """Return a value as every tool shows it."""
+    return Number(
+        name=name, value=_plain(value), unit=unit, error=error,
+        source=shortened(source, LONGEST_SOURCE), verdict=verdict,
+    )  # fmt: skip
+
+
+def _plain(value: object) -> Plain:
+    """Return a number with six digits, the span of a list, or a short text."""
     if isinstance(value, (list, tuple)):
         flat = [one for one in _flat(value) if isinstance(one, (int, float))]
         ends = f" from {_rounded(min(flat))} to {_rounded(max(flat))}" if flat else ""

@@ -122,7 +122,8 @@ def as_json(answer: Answer) -> bytes:
 P = ParamSpec("P")
 T = TypeVar("T")
 
-THREADS = 64
+THREADS = 300
+"""Largest number of these threads: more than the calculations that wait and run (`calculation_waiting`)."""
 WATCHED = 0.05
 """Time after which the service watches for a disconnected client [s]; most answers take less."""
 

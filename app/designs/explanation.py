@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
+from app.calculations.json_values import criterion
 from app.catalogue.catalogues import Catalogues
 from app.designs.criterion_explanation import explain_any
 from app.designs.document import Document
 from app.designs.engine.calculation import Calculation
 from app.designs.engine.verdicts import Verdicts
 from app.designs.errors import DesignError
+from app.designs.origins import cells_behind
 from app.designs.questions import calculated_revision, settled
 from app.designs.schemas.designs import Explanation
 from app.designs.sensitivities import SensitivityQuestion, sensitivities
 from app.pool.errors import StepDeferred
 from app.pool.questions import EXPLANATION, Kind, Reply, json_answer, json_form
 from app.presentation.units import System
+from app.reference import Reference
+from app.schemas.criteria import Criterion
 from app.storage.database import Database
+from templates.core.criteria.summary import worst_first
 
 
 @dataclass(frozen=True)
@@ -64,12 +70,28 @@ def explained(
         If there is no such name.
     """
     chain = Explanation.model_validate(explain_any(document, calculation, name))
-    subject = Verdicts(calculation).subject(chain.name) if chain.kind == "criterion" else None
+    verdicts, is_criterion = Verdicts(calculation), chain.kind == "criterion"
+    subject = verdicts.subject(chain.name) if is_criterion else None
+    criteria = {} if is_criterion else {"criteria": _criteria_beside(calculation, verdicts, chain.name)}
     slopes = sensitivities(
         document, calculation, catalogues, SensitivityQuestion(chain.name, subject, system)
     )
     reason = {} if slopes.reason is None else {"reason": slopes.reason}
-    return chain.in_units(system).model_copy(update={"sensitivities": list(slopes.items), **reason})
+    chain = chain.model_copy(update=criteria).in_units(system)
+    return chain.model_copy(update={"sensitivities": list(slopes.items), **reason})
+
+
+def _criteria_beside(calculation: Calculation, verdicts: Verdicts, parameter: str) -> list[Criterion]:
+    """Return the criteria that depend on a parameter or on a value behind it, worst first."""
+    own = _cells(calculation, [Reference.parse(parameter)])
+    names = [
+        name for name in verdicts.names() if own & _cells(calculation, verdicts.references(name).values())
+    ]
+    return [Criterion.model_validate(criterion(one)) for one in worst_first(verdicts.some(names))]
+
+
+def _cells(calculation: Calculation, references: Iterable[Reference]) -> set[str]:
+    return {cell.name for cell in cells_behind(calculation.graph, references)}
 
 
 EXPLANATIONS = Kind(

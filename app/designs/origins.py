@@ -19,7 +19,13 @@ def literals_behind(calculation: Calculation, starts: Iterable[Reference]) -> li
 
     Quantities that act through a measurement of a solid are included.
     """
-    graph, cells = calculation.graph, list[Cell]()
+    cells = cells_behind(calculation.graph, starts)
+    return [cell for cell in cells if not cell.relations and _is_single(calculation, cell)]
+
+
+def cells_behind(graph: Graph, starts: Iterable[Reference]) -> list[Cell]:
+    """Return the cells on which values depend, also through a measurement of a solid."""
+    cells = list[Cell]()
     left, seen = [*starts][::-1], set[Reference]()
     while left:
         reference = left.pop()
@@ -31,7 +37,7 @@ def literals_behind(calculation: Calculation, starts: Iterable[Reference]) -> li
             left += cell.uses.values()
         elif reference.block in graph.blocks:
             left += _inputs(graph, reference)
-    return [cell for cell in cells if not cell.relations and _is_single(calculation, cell)]
+    return cells
 
 
 def _inputs(graph: Graph, reference: Reference) -> list[Reference]:

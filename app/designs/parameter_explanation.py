@@ -95,7 +95,15 @@ class Explainer:
         paper = formula_on_paper(cls, declared)
         because = [self.of(Reference(head, None, used)) for used in paper.pop("uses")]
         del paper["name"]
-        return {"kind": kind, "template": json_values.identity(cls), **paper, "because": because}
+        about = {"template": json_values.identity(cls), **self._error(head, tail)}
+        return {"kind": kind, **about, **paper, "because": because}
+
+    def _error(self, step: str, output: str) -> JsonObject:
+        """Return the estimated error of a step's output at its level; nothing if its template has none."""
+        evaluation = self.calculation.evaluations.get(step)
+        if evaluation is None or output not in evaluation.error:
+            return {}
+        return {"error": json_values.errors({output: evaluation.error[output]})[output]}
 
     def _value(self, reference: Reference) -> JsonObject | None:
         """Return the value with its unit; null while it is pending or unset."""

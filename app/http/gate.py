@@ -21,6 +21,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from app.http import access, guard
 from app.http.connections import AddressLimit
 from app.http.limits import AddressCrowded, BodyLimits, ServiceStopping
+from app.http.pace import Pace
 from app.http.strict_requests import HttpError
 from app.http.uploads import UploadRoute
 from app.identity.errors import IdentityError
@@ -63,6 +64,7 @@ class Gate:
     ) -> None:
         self.app, self.hosts, self.body, self.addresses = app, hosts, body, addresses
         self.refuse, self.unexpected = refuse, unexpected
+        self._turns = Pace()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Refuse a request, or pass it on as its principal; add the headers to the response."""
@@ -89,6 +91,8 @@ class Gate:
             self.addresses.leave(client)
 
     async def _admitted(self, scope: Scope, receive: Receive, answer: _Answer) -> None:
+        if scope["path"] not in access.HEALTH:
+            await self._turns.step()
         try:
             guard.check(scope, self.hosts)
             limited = self.body.admit(scope, receive)

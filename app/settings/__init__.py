@@ -125,7 +125,7 @@ class Settings(BaseSettings):
         0, ge=0, description="processes for expensive calculations; 0: one for each core"
     )
     calculation_waiting: int = Field(
-        32, gt=0, description="expensive calculations that may wait before new ones are refused"
+        200, gt=0, description="expensive calculations that may wait before new ones are refused"
     )
     calculation_deadline: float = Field(
         30.0,

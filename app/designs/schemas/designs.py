@@ -364,8 +364,13 @@ class Explanation(Answer):
     latex: str | None = None
     mathml: str | None = None
     source: str | None = None
+    error: Error = Field(None, description="for an output of a step with levels, as in its results")
     analysis: AnalysisOptions | None = None
     criterion: Criterion | None = Field(None, description="for a criterion, its judgement")
+    criteria: list[Criterion] | None = Field(
+        None,
+        description="for a parameter, the criteria that depend on it or on a value behind it, worst first",
+    )
     side: Literal["value", "limit"] | None = Field(None, description="side of a criterion's comparison")
     library: str | None = Field(
         None, description="for a limit from a library, the table with the row `typed`"

@@ -9,6 +9,7 @@ from fastapi import APIRouter, Path, Request, Response
 
 from app.designs.explanation import ExplanationQuestion
 from app.presentation.criteria import line
+from app.web.explanation.faces import face_of
 from app.web.explanation.sensitivities import sensitivity_lines
 from app.web.shared.paths import Id
 from app.web.shared.responses import show, units_of
@@ -37,3 +38,13 @@ async def explanation(
         judged=judged,
         sensitivities=slopes,
     )
+
+
+@router.get("/designs/{id}/faces/{name}")
+async def face(
+    id: Id, name: Annotated[str, Path(max_length=140)], request: Request, services: ThePageServices
+) -> Response:
+    """Return what the panel beside the 3-D view shows of the parameter that a face carries."""
+    asked = ExplanationQuestion(id, name, units_of(request))
+    chain = await services.calculate(None, services.explanations.at_once, asked)
+    return show(request, "explanation/face.html", design=id, face=face_of(chain))

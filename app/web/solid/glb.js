@@ -22,7 +22,7 @@ export function readGlb(buffer) {
 
 // Return the parameters that each corner of a body carries, as the extras of its primitives name them.
 function marksOf(primitives, read, count) {
-  const marks = new Array(count).fill([]);
+  const marks = Array.from({ length: count }, () => []);
   for (const { extras, indices } of primitives)
     for (const corner of extras ? read(indices) : []) marks[corner] = extras.parameters;
   return marks;

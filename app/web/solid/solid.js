@@ -5,9 +5,11 @@ import { unit } from "../shared/numbers.js";
 import { plotly } from "../plots/plots.js";
 import { pressureOf } from "../plots/pressure.js";
 import { FIELD, drawScene, showColours } from "./scene.js";
+import { startFaces } from "./faces.js";
 
 const PLAIN = { ambient: 1, diffuse: 0, specular: 0, fresnel: 0 }; // the colours of the corners already include the light
 const shade = (colour, power) => `rgb(${colour.map((part) => Math.min(255, Math.round(part * power * 1.25))).join(",")})`;
+const CHOSEN = [214, 140, 20]; // colour of the faces of a chosen parameter
 const LEAST = 0.003; // smallest painted pressure, relative to the largest
 const AGAIN = 1500, TIMES = 20; // ms
 
@@ -38,8 +40,20 @@ async function fetched(path) {
 async function drawSolid(place, bodies) {
   const before = place.querySelector(".js-plotly-plot"), figure = before ?? document.createElement("div");
   if (!before) place.replaceChildren(figure);
-  const traces = bodies.map(({ mesh, light, colour, painted }) => ({ type: "mesh3d", ...mesh, vertexcolor: light.map((power, corner) => shade(painted ? painted[corner] : colour, power)), hoverinfo: "skip", lighting: PLAIN }));
+  const traces = bodies.map((body) => ({ type: "mesh3d", ...body.mesh, vertexcolor: cornerColours(body), hoverinfo: "none", lighting: PLAIN }));
   await drawScene(figure, traces);
+  startFaces(place, figure, bodies, (name) => highlight(figure, bodies, name));
+}
+
+// Return the colours of the corners; those of faces that carry the named parameter have a colour of their own.
+function cornerColours({ light, colour, painted, marks }, name) {
+  const isChosen = marks.map((own) => own.includes(name));
+  return light.map((power, corner) => shade(isChosen[corner % marks.length] ? CHOSEN : painted ? painted[corner] : colour, power));
+}
+
+async function highlight(figure, bodies, name) {
+  const Plotly = await plotly();
+  await Plotly.restyle(figure, { vertexcolor: bodies.map((body) => cornerColours(body, name)) }, bodies.map((_, trace) => trace));
 }
 
 // Show the part in the colours of a field, with the file, range and unit in the chosen option; or plain again.

@@ -125,6 +125,39 @@ def test_a_design_is_proposed_explained_previewed_verified_and_fetched(tools, ht
     assert f"revision 2 of design {id}" in second["summary"]
 
 
+SHELL = {
+    "design": "shell",
+    "with": {"film.radial_load": "25 kN"},
+    "free": {"film.bearing_width": {"between": ["15 mm", "40 mm"], "step": "0.5 mm"}},
+    "set_aside": ["film.bearing_width"],
+    "minimise": "film.power_loss",
+}
+
+
+def test_a_requirement_is_answered_and_nothing_is_saved(tools, http):
+    before = http.get(f"{API}/designs").json()["items"]
+    require = ["film.minimum_film_thickness >= 3 um"]
+    answer = tools.answer("answer", **SHELL, require=require)
+    numbers = {number["name"]: number for number in answer["numbers"]}
+    full = tools.rest(answer)
+    width = full["values"]["film.bearing_width"]["value"]
+    assert answer["summary"].startswith("confirmed: ")
+    assert numbers["film.bearing_width"]["value"] == width["value"]
+    assert numbers["film.bearing_width"]["verdict"] == "confirmed"
+    assert numbers[require[0]]["verdict"] == "confirmed (limit 3.0 um)"
+    assert numbers["film.power_loss"]["error"] == full["objective"]["error"]
+    assert http.get(f"{API}/designs").json()["items"] == before
+
+
+@pytest.mark.slow
+def test_an_infeasible_requirement_names_what_conflicts(tools):
+    answer = tools.answer("answer", **SHELL, require=["film.minimum_film_thickness >= 30 um"])
+    items = {item["name"]: item["text"] for item in answer["items"]}
+    assert answer["summary"].startswith("infeasible: ")
+    assert "film.minimum_film_thickness >= 30 um" in items["conflict"]
+    assert "confirmed" not in {number["verdict"] for number in answer["numbers"]}
+
+
 HOSTILE = [
     ("evaluate", {}, "either template"),
     ("evaluate", {"template": 7}, "template: Input should be a valid string"),
@@ -148,6 +181,10 @@ HOSTILE = [
     ("find", {"words": "x" * 10_000}, "words: String should have at most"),
     ("explain", {"id": "oil_film", "kind": "secret"}, "kind"),
     ("explain", {"id": "oil_film", "name": "zzz"}, "has no 'zzz'"),
+    ("explain", {"id": "x", "kind": "design", "name": "../../me"}, "name: String should match"),
+    ("explain", {"id": "x", "kind": "design", "name": ".."}, "name: String should match"),
+    ("evaluate", {"template": "oil_film", "inputs": {"speed": "\ud800"}}, "not Unicode"),
+    ("find", {"words": "\0"}, "NUL"),
     ("verify", {}, "either design, or file"),
     ("verify", {"file": "%%%"}, "neither base64 nor a link"),
     ("verify", {"file": base64.b64encode(b"no STEP").decode()}, "does not state that it comes from"),
@@ -157,6 +194,13 @@ HOSTILE = [
     ("propose", {}, "either document, or design"),
     ("propose", {"document": {"name": "x", "steps": {"a": {"template": "no_such"}}}}, "no_such"),
     ("propose", {"design": "no_such", "change": {"name": "y"}}, "no_such"),
+    ("answer", {}, "design: Field required"),
+    ("answer", {"design": "no_such", "free": {"film.speed": {"between": ["1 rpm", "2 rpm"]}}}, "no_such"),
+    ("answer", {"design": "shell", "free": {}}, "free"),
+    ("answer", {"design": "shell", "free": {"film.speed": {"between": ["1", "2"]}}}, "rpm"),
+    ("answer", {"design": "shell", "free": {"film.speed": {"between": ["2 rpm", "1 rpm"]}}}, "film.speed"),
+    ("answer", {"design": "shell", "free": {"x": 1}, "save": True}, "save: Extra inputs"),
+    ("answer", {"design": 7, "free": {}}, "design: Input should be"),
     ("release", {"design": "x"}, "There is no such tool"),
 ]
 

@@ -143,7 +143,7 @@ def test_the_page_of_solve_states_the_target_with_the_chosen_values(http):
     asked = {"unknown": "bore", "low": "40 mm", "high": "60 mm", "output": "wide", "value": "15.2 mm"}
     page = http.get(f"/designs/{made['id']}/solve", params=asked, headers={"Accept": "text/html"}).text
     assert "solved with the calculated values of wide (rounded up to 0.5 mm)" in page
-    assert "0.0155 m with the chosen values" in page
+    assert "15.5 mm with the chosen values" in page
 
 
 def test_slopes_of_a_study_name_the_rounding(http):

@@ -61,8 +61,12 @@ STAND_IN = """{
       place.classList.add("js-plotly-plot");
       place.style.height = `${layout.height}px`;
       place.data = traces;
+      place.on = (event, act) => { (place.acts ??= {})[event] = act; };
     },
     async addTraces(place, trace) { place.data.push(trace); },
+    async restyle(place, { vertexcolor }, numbers) {
+      numbers.forEach((number, n) => { place.data[number].vertexcolor = vertexcolor[n]; });
+    },
     async deleteTraces(place, number) { place.data.splice(number, 1); },
   };
   const { get, set } = Object.getOwnPropertyDescriptor(HTMLScriptElement.prototype, "src");

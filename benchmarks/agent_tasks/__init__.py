@@ -1,0 +1,1 @@
+"""Tasks for agents in words, with graded answers; see docs/agents.md."""
