@@ -13,6 +13,7 @@ from templates.core.errors import plain
 Kind = Literal["template", "model", "design", "table"]
 Id = Annotated[str, Field(pattern="^[A-Za-z0-9_-]{1,64}$")]
 Text = Annotated[str, Field(max_length=300)]
+Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)*$", max_length=200)]
 Values = dict[Annotated[str, Field(max_length=200)], JsonValue]
 Version = Annotated[int, Field(ge=1, le=10**6)]
 LONGEST_FILE = 16 * 2**20  # characters of a file in base64
@@ -45,7 +46,7 @@ class Explain(Arguments):
     id: Id
     kind: Kind = "template"
     version: Version | SkipJsonSchema[None] = None
-    name: Text | SkipJsonSchema[None] = None
+    name: Name | SkipJsonSchema[None] = None
 
 
 class Evaluate(Arguments):

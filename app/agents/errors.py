@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import httpx
-from pydantic import ValidationError
 
-from app.agents.arguments import faults
 from app.client import Problem
 
 REMEDIES = {
@@ -28,10 +26,10 @@ def message(error: Exception, url: str) -> str | None:
     """Return the text of a refusal; None for a fault of this program."""
     if isinstance(error, Problem):
         return _problem(error)
-    if isinstance(error, ValidationError):
-        return f"The arguments are wrong:\n{faults(error)}"
     if isinstance(error, Refused):
         return f"Refused: {error}"
+    if isinstance(error, (UnicodeError, RecursionError)):
+        return "Refused: a text is not Unicode, or the arguments nest too deep"
     if isinstance(error, httpx.TransportError):
         return f"The service at {url} does not answer: {error or type(error).__name__}. {DOWN}"
     return None

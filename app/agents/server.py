@@ -101,7 +101,10 @@ class AgentServer:
     def _call(self, context: Context) -> Call:
         """Open a call with the key of the request, or of the only caller."""
         key = self.key if context.request is None else key_of(context.request)
-        return Call.of(self.url, key, self.answers)
+        try:
+            return Call.of(self.url, key, self.answers)
+        except ValueError as error:
+            raise Refused(f"Authorization: {error}") from None
 
     def _message(self, error: Exception) -> str:
         """Return a refusal as text; log a fault of this program, and say no more than that it happened."""

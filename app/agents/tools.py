@@ -9,8 +9,10 @@ from collections.abc import Awaitable, Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TypeVar
 
+from pydantic import ValidationError
+
 from app.agents.answer import answer
-from app.agents.arguments import Answer, Arguments, Evaluate, Explain, Find, Propose, Report, Verify
+from app.agents.arguments import Answer, Arguments, Evaluate, Explain, Find, Propose, Report, Verify, faults
 from app.agents.calls import Call
 from app.agents.errors import Refused
 from app.agents.explain import explain, version_of
@@ -20,7 +22,7 @@ from app.catalogue.schemas.templates import TemplateList
 from app.client.design_operations import once
 from app.client.exchange import BASE, MERGE_PATCH, Exchange, Request, answered, get, listed, post, written
 from app.client.operations import Options
-from app.designs.schemas.designs import Design, Preview, Revision
+from app.designs.schemas.designs import Design, DesignList, Preview, Revision
 from app.schemas.answers import Warning
 from app.schemas.criteria import Criterion, Verdict
 from templates.core.errors import plain
@@ -43,8 +45,10 @@ async def find(call: Call, given: Find) -> Reply:
 
 async def _matches(call: Call, kind: str, words: str) -> list[Item]:
     if kind == "design":
-        rows = await call.service.designs(name=words)
-        return [_item(kind, one.id, f"{one.name}, revision {one.revision}, {one.state}") for one in rows]
+        page = await call.service.run(answered(DesignList, get("/designs", {"name": words, "limit": "20"})))
+        return [
+            _item(kind, one.id, f"{one.name}, revision {one.revision}, {one.state}") for one in page.items
+        ]
     if kind == "template":
         return [
             _item(kind, f"{one.id} {one.version}", one.title)
@@ -228,7 +232,11 @@ def _tool(
     """Return a tool that checks its arguments before it answers."""
 
     async def run(call: Call, given: Mapping[str, object]) -> Reply:
-        return await answer(call, arguments.model_validate(given))
+        try:
+            checked = arguments.model_validate(given)
+        except ValidationError as error:
+            raise Refused(f"the arguments are wrong\n{faults(error)}") from None
+        return await answer(call, checked)
 
     return Tool(words, arguments, run, reads_only)
 

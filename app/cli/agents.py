@@ -24,13 +24,14 @@ def mcp_command(url: str | None, over_http: bool, host: str, port: int) -> None:
     settings = Settings()
     place = url or f"http://127.0.0.1:{settings.port}"
     try:
-        from app.agents.http import serve_http
         from app.agents.server import serve_stdio
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] not in ("mcp", "mcp_types"):
             raise
         raise click.ClickException(MISSING) from None
     if over_http:
+        from app.agents.http import serve_http  # imports the web framework, which stdio does not need
+
         click.echo(f"MCP at http://{host}:{port}/mcp, for the service at {place}", err=True)
         serve_http(place, host, port, settings.allowed_hosts)
     else:

@@ -73,6 +73,9 @@ async function previewed(signal, isQuick) {
 // Mark a step that is not calculated yet; while nothing is changed, the page shows the results of the revision.
 const isWaiting = (answer) => answer.state === "pending" && (designState !== "current" || draft.isChanged());
 
+// The page has the verdict and the lines of the saved revision; a preview without some of its steps knows less.
+const knowsLess = () => designState === "current" && !draft.isChanged() && Object.values(steps).some(({ state }) => state === "pending");
+
 function waiting({ steps }) {
   const names = Object.keys(steps).filter((step) => isWaiting(steps[step]));
   return names.length > 0 && `${names.join(", ")} not calculated yet`;
@@ -82,9 +85,9 @@ function show(payload) {
   steps = payload.steps;
   rounded = new Map((payload.rounded ?? []).map((row) => [row.name, row]));
   names.update(payload);
-  lines.show(payload);
+  if (!knowsLess()) lines.show(payload);
   ofVariants?.classList.toggle("outdated", draft.isChanged());
-  if (isJudged || draft.isChanged()) showVerdict(payload);
+  if ((isJudged || draft.isChanged()) && !knowsLess()) showVerdict(payload);
   for (const [step, answer] of Object.entries(steps)) {
     markWaiting(step, isWaiting(answer));
     if (answer.state === "pending") continue;

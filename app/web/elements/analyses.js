@@ -15,11 +15,12 @@ export function showAnalysis(list, analysis) {
 
 function table(analysis) {
   const kind = capital(words(analysis.kind));
-  const place = element("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: kind });
+  const place = element("div", { className: "scroll", tabIndex: 0, role: "region" });
   place.dataset.analysis = analysis.id;
   const asked = analysis.tolerance === null ? `level ${analysis.level}` : `within ${percent(analysis.tolerance)}`;
   const held = HELD.includes(analysis.kind) ? `${words(analysis.boundary)}, ` : "";
   const caption = element("caption", {}, `${kind} `, element("span", { className: "muted" }, `${held}${asked}${LOADED.includes(analysis.kind) ? `; under ${quantityText(analysis.load)}` : ""}`));
+  place.ariaLabel = caption.textContent;
   const head = element("thead", {}, element("tr", {}, ...HEADS.map((text) => element("th", { scope: "col" }, text))));
   const rows = Object.entries(analysis.outputs).filter(([name]) => name !== "surface").flatMap(rowsOf);
   place.append(element("table", { className: "results elements-results" }, caption, head, element("tbody", {}, ...rows)));

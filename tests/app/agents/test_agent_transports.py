@@ -29,9 +29,10 @@ def address(team):
         yield address
 
 
-def posted(address, key=None, **headers):
+def posted(address, key=None, tool=None, **headers):
+    body = LIST if tool is None else {**LIST, "method": "tools/call", "params": FIND}
     sent = ACCEPT | headers | ({"Authorization": f"Bearer {key}"} if key else {})
-    return httpx.post(address, json=LIST, headers=sent, trust_env=False, timeout=60)
+    return httpx.post(address, json=body, headers=sent, trust_env=False, timeout=60)
 
 
 def called(address, key, name, /, **arguments):
@@ -139,8 +140,14 @@ def test_a_file_is_fetched_with_the_key_of_the_request(team, address):
 def test_tools_without_keys_are_for_this_machine_only(served):
     with over_http(served.url, host="0.0.0.0") as address:
         answer = posted(address)
-    assert answer.status_code == 403 or answer.status_code == 421
+    assert answer.status_code in (403, 421)
     assert "keys add" in answer.json()["detail"]
+
+
+def test_a_key_that_is_none_is_refused_in_words_where_the_service_needs_no_key(served):
+    with over_http(served.url) as address:
+        text = posted(address, "nonsense", tool="find").json()["result"]["content"][0]["text"]
+    assert text.startswith("Refused: Authorization: this is not a key")
 
 
 def test_the_environments_key_is_not_lent_to_callers_over_http(team, address, monkeypatch):

@@ -143,7 +143,7 @@ def test_the_page_of_solve_states_the_target_with_the_chosen_values(http):
     asked = {"unknown": "bore", "low": "40 mm", "high": "60 mm", "output": "wide", "value": "15.2 mm"}
     page = http.get(f"/designs/{made['id']}/solve", params=asked, headers={"Accept": "text/html"}).text
     assert "solved with the calculated values of wide (rounded up to 0.5 mm)" in page
-    assert "0.0155 m with the chosen values" in page
+    assert "15.5 mm with the chosen values" in page
 
 
 def test_slopes_of_a_study_name_the_rounding(http):
@@ -153,7 +153,7 @@ def test_slopes_of_a_study_name_the_rounding(http):
     study = done(http, made, method="sensitivity", kind="local", vary=vary, outputs=["wide", "free"])
     indices = study["result"]["indices"]
     assert "slope" not in indices["wide"]["bore"]
-    assert indices["free"]["bore"]["slope"]["value"] == pytest.approx(0.5e-3)  # m/mm
+    assert indices["free"]["bore"]["slope"]["value"] == pytest.approx(0.5)  # mm/mm
     (note,) = [one for one in study["result"]["notes"] if "wide" in one]
     assert note == (
         "wide has no slope over bore, which acts through wide (rounded up to 0.5 mm): it changes in steps"

@@ -1,13 +1,14 @@
 """Five jobs of an engineer, each from the front page alone; the hand counts its clicks and fields.
 
 A job ends with its result on a page or in a file. At the end nothing went wrong on any page, and a reload
-shows the same result.
+shows the same result. The last page is accessible, and no wider than a screen of 1440 or 390 pixels.
 """
 
 import re
 
 import numpy as np
 import pytest
+from axe_playwright_python.sync_playwright import Axe
 from browsing import CHROMIUM
 from patience import patient
 from playwright.sync_api import expect
@@ -96,6 +97,11 @@ def hand(watched):
     yield hand
     typing = [fault for fault in watched.faults() if "422" in str(fault)]  # previews of half-typed values
     assert [fault for fault in watched.faults() if fault not in typing] == []
+    for width in (1440, 390):
+        hand.page.set_viewport_size({"width": width, "height": 844})
+        found = Axe().run(hand.page, options={"resultTypes": ["violations"]}).response["violations"]
+        assert [(one["id"], one["nodes"][0]["html"]) for one in found] == []
+        assert hand.page.evaluate("document.documentElement.scrollWidth") <= width
 
 
 def diagram():

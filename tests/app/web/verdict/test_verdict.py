@@ -193,6 +193,27 @@ def test_the_browser_writes_the_verdict_as_the_server_does(watched, paper):
     assert watched.faults() == []
 
 
+@pytest.mark.slow
+def test_a_preview_without_its_steps_leaves_the_verdict_of_the_revision(watched, http, two_steps):
+    """A server that began anew has no results in memory; the page then shows those that are saved."""
+    page = watched.page
+    saved = re.search(r'id="verdict">([^<]+)', http.get(two_steps).text)[1]
+
+    def without_steps(route):
+        answer = route.fetch()
+        payload = answer.json()
+        payload["steps"] = {name: {**step, "state": "pending"} for name, step in payload["steps"].items()}
+        payload["verdict"] = {**payload["verdict"], "headline": "Nothing is known"}
+        route.fulfill(response=answer, json=payload)
+
+    page.route("**/preview?**", without_steps)
+    watched.open(two_steps, wait_until="networkidle")
+    headline = page.locator("#verdict")
+    expect(headline).to_have_text(saved)
+    page.locator('[name="film.bearing_width"]').fill("19 mm")
+    expect(headline).to_have_text("Nothing is known")  # of the draft
+
+
 def in_view(page, selector):
     return page.evaluate(
         "(selector) => { const box = document.querySelector(selector).getBoundingClientRect();"
