@@ -1,7 +1,7 @@
 """Measure the costs of the program and compare with aims: `python -m benchmarks.all [films elements …]`.
 
-The arguments are kinds of work: films, elements, slopes, serving, shell. `python -m benchmarks.all kept`
-prints the stored table without measuring.
+The arguments are kinds of work: films, elements, slopes, serving, shell, answers. `python -m benchmarks.all
+kept` prints the stored table without measuring.
 
 Each kind of work runs in its own process, one after the other, with one BLAS thread. Times are processor
 times, because other work on the machine affects them least; wall times are marked. The whole run takes less
@@ -30,7 +30,7 @@ from benchmarks.speed.servers import commit, machine
 RESULTS = Path(__file__).parent / "results" / "all.json"
 PAGE = Path(__file__).parents[1] / "docs" / "costs.md"
 HEAD = "| work | measured | aim | | how |\n|---|---|---|---|---|"
-KINDS = ("shell", "serving", "films", "elements", "slopes")
+KINDS = ("shell", "serving", "films", "elements", "slopes", "answers")
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS")
 
 

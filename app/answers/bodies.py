@@ -24,7 +24,6 @@ DESIGN: JsonDict = {
 }
 PAPER_BEARING: JsonDict = {
     "design": "shell",
-    "with": {"film.radial_load": "25 kN"},
     "free": {
         "film.bearing_width": {"between": ["15 mm", "40 mm"], "step": "0.5 mm"},
         "film.diametral_clearance": {"between": ["30 um", "120 um"]},

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import product
 from time import process_time
 
@@ -32,6 +33,7 @@ SURFACE_ROWS = 512
 FIT_ERROR = 2e-3
 """Largest deviation of a response surface from rows that it has not seen."""
 MOST_SURFACES = 8
+MOST_ERRORS = 64  # rows of a call whose errors of the objective are kept
 EXPLORED_SECONDS = 20.0
 """Estimated time of the rows of a surface above which fewer rows define it [s]."""
 FEWEST_ROWS = 24
@@ -65,6 +67,7 @@ class RequestColumns:
     objective: Reference | None
     problem: Problem
     _kept: dict[tuple[object, bytes], Columns] = field(default_factory=dict)
+    _errors: dict[bytes, Array] = field(default_factory=dict)
 
     @property
     def numbers(self) -> list[int]:
@@ -166,23 +169,21 @@ class RequestColumns:
         sides = [judged_of(engine, name, table) for name in self.required]
         values, limits, low, high, certain = (_side_by_side(sides, self.required, side) for side in SIDES)
         goal = table.columns[self.objective] if self.objective else np.zeros(table.count)
+        if self.objective in table.errors and table.count <= MOST_ERRORS:
+            self._errors[inputs.tobytes()] = table.errors[self.objective]
         seconds = process_time() - start
         use.rows += len(inputs)
         use.seconds += seconds
         reasons = {row: f"{one.place}: {one.detail}" for row, one in table.refusals.items()}
         return Columns(goal[:, None], values, limits, low, high, reasons, seconds, is_known=certain == 1)
 
-    def errors_at(self, at: Array, use: Use) -> float | None:
+    def error_at(self, at: Array, use: Use) -> float | None:
         """Return the largest relative error of the objective at a point; None if one is unknown."""
         if self.objective is None:
             return None
-        inputs = self.inputs(at[None])[0]
-        engine = self.engine_of(tuple(int(at[n]) for n in self.choices))
-        rows = {self.places[n].reference: inputs[:, k] for k, n in enumerate(self.numbers)}
-        errors = engine(rows, [self.objective], levels=use.levels).errors.get(self.objective)
-        if errors is None or not np.isfinite(errors).all():
-            return None
-        return float(np.max(errors))
+        self.at(use)(at[None])
+        errors = self._errors.get(self.inputs(at[None])[0].tobytes())
+        return float(np.max(errors)) if errors is not None and np.isfinite(errors).all() else None
 
     def _surface(self, chosen: Chosen, use: Use) -> ResponseSurface | None:
         """Return the surface through rows at the coarse levels, if it reproduces others well enough."""
@@ -201,7 +202,7 @@ class RequestColumns:
         surface = fitted(unit, whole)
         return surface if surface is not None and surface.error <= FIT_ERROR else None
 
-    @property
+    @cached_property
     def _box(self) -> tuple[Array, Array]:
         """Return the least and the greatest value [SI] of each quantity, with its ends."""
         ends = [_extremes(self.places[n], self._largest_sizes(n)) for n in self.numbers]

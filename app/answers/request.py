@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Literal
 
 import numpy as np
@@ -78,7 +78,7 @@ class Request:
             if name not in unknown:
                 faults += form_faults(name, one, is_choice=name in self._choices)
         raise_if([fault.within("free") for fault in faults])
-        engine = self._engine(self.document, ())
+        engine = self.engine(())
         if self.objective is not None:
             raise_if([fault.within(self.sense) for fault in engine.design.faults([self.objective], {})])
         free = PlaceReader(self.graph, engine.accepted, engine.nominal_value).read(self.body.free)
@@ -87,6 +87,18 @@ class Request:
             detail = f"the options have {count} combinations; at most {MOST_COMBINATIONS} are tried"
             raise InvalidInputs([Fault("free", "too_many", f"{detail}: name fewer options")])
         return free
+
+    @cached_property
+    def _engines(self) -> dict[tuple[Chosen, tuple[str, ...]], DesignEngine]:
+        return {}
+
+    def engine(self, required: Collection[str], chosen: Chosen = ()) -> DesignEngine:
+        """Return the engine of the design with some options, which judges some criteria."""
+        key = chosen, tuple(required)
+        if key not in self._engines:
+            document = self._with_options(chosen) if chosen else self.document
+            self._engines[key] = self._engine(document, required)
+        return self._engines[key]
 
     def _engine(self, document: Document, required: Collection[str]) -> DesignEngine:
         numbers = [Reference.parse(name) for name in self.body.free if name not in self._choices]
@@ -123,7 +135,7 @@ class Request:
     @cached_property
     def required(self) -> list[str]:
         """Return the required criteria."""
-        names = named(self.asked, self.graph, self._engine(self.document, ()).criteria())
+        names = named(self.asked, self.graph, self.engine(()).criteria())
         if self.asked.names is None:
             names = self._judgeable(names)
         if not names:
@@ -152,13 +164,7 @@ class Request:
         held = tuple(Held(name, every[name].criterion.sign) for name in names)
         goal = Objective(str(self.objective or "objective"), self.sense)
         problem = Problem(Space(tuple(place.variable for place in self.free)), (goal,), held)
-        engines: dict[Chosen, DesignEngine] = {}
-
-        def engine_of(chosen: Chosen) -> DesignEngine:
-            if chosen not in engines:
-                engines[chosen] = self._engine(self._with_options(chosen), names)
-            return engines[chosen]
-
+        engine_of = partial(self.engine, names)
         return RequestColumns(engine_of, self.free, names, self.asked.targets, self.objective, problem)
 
     def _with_options(self, chosen: Chosen) -> Document:
@@ -194,7 +200,7 @@ class Request:
             return self._within(self.body.tolerance)
         finest = {one.name: one.level or (one.cls.levels or (None,))[-1] for one in steps}
         engine, wanted = (
-            self._engine(self.document, self.required),
+            self.engine(self.required),
             [self.objective] if self.objective else [],
         )
         seconds = engine.seconds(1, wanted, finest, criteria=self.required)
@@ -212,7 +218,7 @@ class Request:
 
     def _steps(self, names: list[str]) -> list[Block]:
         """Return the steps that the requirements and the objective need."""
-        engine = self._engine(self.document, names)
+        engine = self.engine(names)
         wanted = [self.objective] if self.objective else []
         return engine.design.steps(Targets.of(wanted, engine.subjects(names).values()))
 

@@ -246,9 +246,9 @@ class AnswerText:
         if goal is None or not math.isfinite(value):
             return None
         name = self._unit_of_goal
-        errors = self.request.columns.errors_at(at, self.confirmed)
+        error = self.request.columns.error_at(at, self.confirmed)
         shown = Quantity(value=float(unit(name).from_si(value)), unit=name)
-        return AnswerObjective(name=str(goal), sense=self.request.sense, value=shown, error=errors)
+        return AnswerObjective(name=str(goal), sense=self.request.sense, value=shown, error=error)
 
     @cached_property
     def _unit_of_goal(self) -> str:

@@ -21,6 +21,8 @@ from templates.core.arrays import Array
 from templates.core.progress import report
 
 SEED = 1
+CHALLENGES = 2
+"""Points far from the optimum at which the levels are compared before an answer."""
 RELAXED_BY = (0.01, 0.02, 0.05, 0.1, 0.2)
 """Relaxations of a limit that are tried until the objective gains, relative to the limit."""
 MOST_BINDING = 3
@@ -80,7 +82,7 @@ class Search:
     def run(self) -> tuple[Optimum, Run]:
         """Return the optimum, and the run with its corrections."""
         run = Run(self.problem, self.explore, self.confirm, SEED, WITHIN)
-        return optimised_run(run), run
+        return optimised_run(run, challenges=CHALLENGES), run
 
     def bindings(self, optimum: Optimum, run: Run) -> list[BindingLimit]:
         """Return the requirements whose relaxation gains, the largest gain first; else the nearest one."""

@@ -56,6 +56,7 @@ from app.client.exchange import (
     read,
 )
 from app.client.files import File
+from app.client.questions import answer as answer
 from app.client.questions import impact as impact
 from app.client.questions import solve_design as solve_design
 from app.client.questions import tolerance as tolerance

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from app.answers.schemas import DesignAnswer
 from app.client.design_operations import change
 from app.client.exchange import Exchange, Progress, calculated, post
 from app.designs.schemas.designs import Design
@@ -31,6 +32,32 @@ def solve_design(
     body |= {} if tolerance is None else {"tolerance": tolerance}
     body |= {"with": dict(others)} if others else {}
     return calculated(DesignSolution, post(f"/designs/{id}/solve", body), on_progress)
+
+
+def answer(
+    design: str | Mapping[str, object],
+    free: Mapping[str, Mapping[str, object]],
+    *,
+    require: Sequence[str] | None = None,
+    minimise: str | None = None,
+    maximise: str | None = None,
+    options: Mapping[str, object] | None = None,
+    revision: int | None = None,
+    key: str | None = None,
+    on_progress: Progress | None = None,
+) -> Exchange[DesignAnswer]:
+    """Return the values of free places that meet requirements, or the requirements that conflict.
+
+    `design` is the id of a design, a name of the gallery, or a document. `options` are the other members of
+    the body, such as `targets`, `with`, `set_aside`, `tolerance`, `files` and `save`; to save into a design,
+    give the `revision` that was read.
+    """
+    goals = {"require": require, "minimise": minimise, "maximise": maximise}
+    body: dict[str, object] = {"design": design, "free": free, **(options or {})}
+    body |= {name: goal for name, goal in goals.items() if goal is not None}
+    headers = {} if revision is None else {"If-Match": f'"{revision}"'}
+    headers |= {} if key is None else {"Idempotency-Key": key}
+    return calculated(DesignAnswer, post("/answer", body, headers), on_progress)
 
 
 def tolerance(

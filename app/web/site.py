@@ -21,6 +21,7 @@ from app.web.designs import routes as designs
 from app.web.engine_bearings import routes as engine_bearings
 from app.web.explanation import routes as explanation
 from app.web.faults import routes as faults
+from app.web.find_bearing import routes as find_bearing
 from app.web.home import routes as home
 from app.web.impact import routes as impact
 from app.web.lists import columns
@@ -57,6 +58,8 @@ ROUTERS = (
     model.router,
     engine_bearings.router,
     engine_bearings.forms,
+    find_bearing.router,
+    find_bearing.forms,
     new_step.router,  # before the designs: `new` is not the id of one
     design.router,
     actions.router,

@@ -5,36 +5,43 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from math import dist
 
+from cadquery import BoundBox, Vector
+
 from cad.drafting.curves import Point
 from cad.drafting.views import View
 from cad.step import Body
 
+_LARGE = 0.5  # share of the largest cut face of a part, from which a face may have the leader
+_ENDS = (0.5, 0.03, 0.97)  # of a bolt's length: its middle, its head and its tip
 _MOST = 24  # parts of a sheet that get balloons
 
 
-def balloons(section: View, end: View, bodies: Sequence[Body]) -> Iterator[tuple[int, View, Point]]:
-    """Yield the number of each part in the parts list, and a point on that part in a view that shows it."""
+def balloons(section: View, end: View, bodies: Sequence[Body]) -> Iterator[tuple[int, View, Sequence[Point]]]:
+    """Yield the number of each part in the parts list, and points on that part in a view that shows it."""
     if not 1 < len(bodies) <= _MOST:
         return
     for part, body in enumerate(bodies):
-        if (point := _on_cut(section, part)) is not None:
-            yield part + 1, section, point
-        elif (point := _on_cut(end, part) or _in_break(end, body)) is not None:
-            yield part + 1, end, point
+        if points := _on_cuts(section, part):
+            yield part + 1, section, points
+        elif points := _on_cuts(end, part) or _in_break(end, body):
+            yield part + 1, end, points
         else:
-            yield part + 1, section, _middles(section, body)[0]
+            yield part + 1, section, _middles(section, body)[:1]
 
 
-def _on_cut(view: View, part: int) -> Point | None:
-    """Return a point on the largest cut face of a part.
-
-    The point is the centroid of the face if it lies within the face, otherwise the point in its material that
-    is opposite to the middle of its longest side.
-    """
+def _on_cuts(view: View, part: int) -> list[Point]:
+    """Return a point on each large cut face of a part."""
     outlines = [[(x, y) for x, y, _ in cut.outlines[0]] for cut in view.cut if cut.part == part]
-    if not outlines:
-        return None
-    line = max(outlines, key=lambda one: abs(_area(one)))
+    largest = max((abs(_area(one)) for one in outlines), default=0.0)
+    return [_on_cut(one) for one in outlines if abs(_area(one)) > _LARGE * largest]
+
+
+def _on_cut(line: Sequence[Point]) -> Point:
+    """Return the centroid of a cut face.
+
+    If that lies outside the face, return the point in its material opposite to the middle of the longest
+    side.
+    """
     sides = [*zip(line, [*line[1:], line[0]], strict=True)]
     crosses = [(x * v - u * y, x + u, y + v) for (x, y), (u, v) in sides]
     middle = tuple(sum(c[0] * c[n] for c in crosses) / (6 * _area(line)) for n in (1, 2))
@@ -73,14 +80,25 @@ def _is_inside(point: Sequence[float], sides: Sequence[tuple[Point, Point]]) -> 
     return sum(a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) > x for a, b in over) % 2 == 1
 
 
-def _in_break(view: View, body: Body) -> Point | None:
-    """Return the middle of a part that is in a broken-out section of a view."""
+def _in_break(view: View, body: Body) -> list[Point]:
+    """Return points along the axis of a part whose middle is in a broken-out section of a view."""
     corners = [point for curve in view.broken for point in curve.points]
     if not corners:
-        return None
+        return []
     low, high = (tuple(pick(point[n] for point in corners) for n in (0, 1)) for pick in (min, max))
-    inside = (m for m in _middles(view, body) if all(low[n] < m[n] < high[n] for n in (0, 1)))
-    return next(inside, None)
+    for place in body.places:
+        box = body.shape.moved(place).BoundingBox()
+        one, other = (view.frame.flat(Vector(*corner)) for corner in _corners(box))
+        middle = (one[0] + other[0]) / 2, (one[1] + other[1]) / 2
+        if all(low[n] < middle[n] < high[n] for n in (0, 1)):
+            along = int(abs(other[1] - one[1]) > abs(other[0] - one[0]))
+            places = (one[along] + share * (other[along] - one[along]) for share in _ENDS)
+            return [(middle[0], at) if along else (at, middle[1]) for at in places]
+    return []
+
+
+def _corners(box: BoundBox) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+    return (box.xmin, box.ymin, box.zmin), (box.xmax, box.ymax, box.zmax)
 
 
 def _middles(view: View, body: Body) -> list[Point]:

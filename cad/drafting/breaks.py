@@ -44,6 +44,11 @@ class Break:
         placed = bottom.moved(Location(Plane(middle, plane.xDir, plane.zDir)))
         return list(placed.intersect(shape).Faces())
 
+    def holds(self, curve: Curve) -> bool:
+        """Return whether a curve lies within the rectangle: the lines that a section hides are not drawn."""
+        (x, y), (u, v) = self.low, self.high
+        return all(x - _ON < a < u + _ON and y - _ON < b < v + _ON for a, b in curve.points)
+
     def bounds(self, curve: Curve) -> bool:
         """Return whether a curve lies on one side of the rectangle."""
         (x, y), (u, v) = self.low, self.high
@@ -153,6 +158,10 @@ def _region(
                 and _is_within(place + out * size * _MORE, axis, reach, depth, shapes, plane)
             )
             place = next(in_part, places[-1])
+            gone = (at for at in reversed(places) if not any(_held(at, axis, reach, depth, shapes, plane)))
+            if (beyond := next(gone, None)) is not None:
+                sides[axis, out] = beyond  # no line is drawn where nothing is left
+                continue
             is_near = (edge - place) * out < size / 2
             sides[axis, out] = edge + out * size if is_near else place
     return Break((sides[0, -1], sides[1, -1]), (sides[0, 1], sides[1, 1]), depth)
@@ -162,12 +171,17 @@ def _is_within(
     place: float, axis: int, reach: tuple[float, float], depth: float, shapes: Sequence[Shape], plane: Plane
 ) -> bool:
     """Return whether sample points along a side of the box are all inside the material."""
+    return all(_held(place, axis, reach, depth, shapes, plane))
+
+
+def _held(
+    place: float, axis: int, reach: tuple[float, float], depth: float, shapes: Sequence[Shape], plane: Plane
+) -> Iterator[bool]:
+    """Yield whether each sample point along a side of the box is inside the material."""
     for number in range(_SAMPLES):
         across = reach[0] + (reach[1] - reach[0]) * (number + 0.5) / _SAMPLES
         point = (place, across) if axis == 0 else (across, place)
-        if not _is_in(plane.toWorldCoords((*point, depth)), shapes):
-            return False
-    return True
+        yield _is_in(plane.toWorldCoords((*point, depth)), shapes)
 
 
 def _box(shapes: Sequence[Shape], plane: Plane) -> tuple[Point, Point]:

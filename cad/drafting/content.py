@@ -23,6 +23,8 @@ from cad.step import Body, rigid
 from cad.surfaces import PartSurfaces, Surface, Z
 from cad.tolerances import toleranced_in
 
+_ON_CIRCLE = 1e-3  # from a circle to the centres of the holes on it [mm]
+
 
 @dataclass(frozen=True)
 class Content:
@@ -126,7 +128,24 @@ def contents(
             for one in some:
                 one.define(definition)
             dimensions = Supplement(definition, section, end, shown, repeated).complete(dimensions)
-        yield Content(section, end, some, dimensions, unseen, features, repeated)
+        shown_end = _without_hidden(end, dimensions) if any(one.stations for one in some) else end
+        yield Content(section, shown_end, some, dimensions, unseen, features, repeated)
+
+
+def _without_hidden(end: View, dimensions: Sequence[Dimension]) -> View:
+    """Return the view along a shaft without what its sections show, but with holes on dimensioned circles."""
+    pitches = [
+        one.measure.value / 2
+        for one in dimensions
+        if (one.measure.place, one.measure.form, one.measure.points[0]) == ("end", "circle", (0.0, 0.0))
+    ]
+    arcs = ((curve, curve.arc) for curve in end.hidden)
+    kept = [
+        curve
+        for curve, arc in arcs
+        if arc and any(abs(hypot(*arc.centre) - pitch) < _ON_CIRCLE for pitch in pitches)
+    ]
+    return replace(end, hidden=kept)
 
 
 def _is_upright(body: Body) -> bool:

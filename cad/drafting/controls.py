@@ -24,7 +24,7 @@ from cad.drafting.letter_width import width_of
 from cad.drafting.page import Page
 from cad.drafting.room import Rectangle, Room
 from cad.drafting.symbols import Symbol, arrow, texture
-from cad.drafting.targets import targets
+from cad.drafting.targets import hidden_targets, targets
 from cad.drafting.views import View
 
 _ROUND = 4.0  # radius of a balloon [mm on paper]
@@ -34,6 +34,7 @@ _STEMS = range(2, 90, 3)
 _FIRST, _RING = 8, 4
 """Length of the shortest leader, and the step to the next [mm on paper]."""
 
+_SEVERAL = 3  # lines that a leader crosses only if there is no hidden edge to which it crosses fewer
 _MOST_MET = 6  # lines that a leader crosses on a sheet that is large enough
 
 _SLANT = 0.4
@@ -123,13 +124,13 @@ class Controls:
         self.page.symbol(arrow(target, start))
         self.room.add_leader([target, start])
 
-    def balloon(self, number: str, target: Point) -> None:
-        """Draw the number of a part in a circle, with a leader that ends in a dot on the part."""
+    def balloon(self, number: str, targets: Sequence[Point]) -> None:
+        """Draw the number of a part in a circle, with a leader that ends in a dot at one of the targets."""
 
         def boxes(starts: np.ndarray, _is_left: np.ndarray) -> np.ndarray:
             return np.concatenate([starts - _ROUND, starts + _ROUND], axis=1)
 
-        _, (x, y), _ = self._place([target], boxes, target)
+        target, (x, y), _ = self._place(targets, boxes, targets[0])
         size = dist((x, y), target)
         foot = x + (target[0] - x) * _ROUND / size, y + (target[1] - y) * _ROUND / size
         turns = [pi * step / 4 for step in range(8)]
@@ -157,7 +158,7 @@ class Controls:
         self.room.add_leader([target, start])
 
     def _targets(self, placed: PlacedDimension) -> list[Point]:
-        return targets(placed, self.views, self.plan)
+        return targets(placed, self.views, self.plan, self.room)
 
     def _beside(self, placed: PlacedDimension, boxes_at: BoxesAt) -> tuple[Point, Point, bool]:
         """Return where a leader to the face of a dimension ends and starts, and whether it leads right."""
@@ -166,16 +167,38 @@ class Controls:
             return self._place(self._targets(placed), boxes_at, about)
         across = int(placed.dimension.measure.form == "up")  # its edges lie across what it measures
         ways = _WAYS[np.abs(_WAYS[:, across]) > _SLANT]
-        return self._place(self._targets(placed), boxes_at, about, ways)
+        hidden = hidden_targets(placed, self.views, self.plan)
+        return self._place(self._targets(placed), boxes_at, about, ways, hidden)
 
     def _place(
-        self, ends: Sequence[Point], boxes_at: BoxesAt, about: Point, ways: np.ndarray = _WAYS
+        self,
+        ends: Sequence[Point],
+        boxes_at: BoxesAt,
+        about: Point,
+        ways: np.ndarray = _WAYS,
+        spare: Sequence[Point] = (),
     ) -> tuple[Point, Point, bool]:
         """Return where a leader ends and starts, and whether it leads to the right; occupy its start.
 
         Of the free places the nearest is taken, where each line that the leader crosses counts as some more
-        length. The leader crosses no view but that of the point `about`.
+        length. The leader crosses no view but that of the point `about`. It ends at one of the `spare` points
+        only if it would cross several lines otherwise.
         """
+        found = self._found(ends, boxes_at, about, ways)
+        if spare and (not found or min(found)[1] > _SEVERAL):
+            found += self._found(spare, boxes_at, about, ways)
+        self.faults += not found
+        self.crossed += bool(found) and min(found)[1] > _MOST_MET
+        _, _, end, start, is_left = (
+            min(found) if found else (0, 0, ends[0], (ends[0][0] + 8.0, ends[0][1]), False)
+        )
+        self.room.add(_box(boxes_at, start, is_left=is_left))
+        return end, start, is_left
+
+    def _found(
+        self, ends: Sequence[Point], boxes_at: BoxesAt, about: Point, ways: np.ndarray
+    ) -> list[tuple[float, int, Point, Point, bool]]:
+        """Return free places: their cost, the lines that the leader crosses, its end and its start."""
         found: list[tuple[float, int, Point, Point, bool]] = []
         farthest = round(150 * self.plan.format.width / FORMATS[0].width)
         for away in range(_FIRST, farthest, _RING):
@@ -184,13 +207,7 @@ class Controls:
             for end in ends:
                 ring = self._ring(end, away * ways, boxes_at, about)
                 found += ((away + CROSSING * met, met, end, start, left) for met, start, left in ring)
-        self.faults += not found
-        self.crossed += bool(found) and min(found)[1] > _MOST_MET
-        _, _, end, start, is_left = (
-            min(found) if found else (0, 0, ends[0], (ends[0][0] + 8.0, ends[0][1]), False)
-        )
-        self.room.add(_box(boxes_at, start, is_left=is_left))
-        return end, start, is_left
+        return found
 
     def _ring(
         self, end: Point, away: np.ndarray, boxes_at: BoxesAt, about: Point

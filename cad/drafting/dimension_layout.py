@@ -30,11 +30,15 @@ CROSSING = 12.0  # length that a leader may add in order to cross one line less 
 _ARROWS = 7.0  # shortest dimension line with its arrows within [mm on paper]
 _NARROW = radians(15)  # angle whose words stand beside it
 _TAIL = 6.5  # of a line with its arrows outside [mm on paper]
-_BEYOND = (1.5, 4.5, 7.5, 10.5, 13.5, 16.5, 19.5)  # from an end of a line to a text beyond it [mm on paper]
+_BEYOND = (1.5, 4.5, 7.5, 10.5, 13.5, 16.5, 19.5, 22.5, 25.5, 28.5)
+"""From an end of a line to a text beyond it [mm on paper]."""
+
 _CENTRED = 1e-6  # of a text in the middle of its line [mm on paper]
 _OFF_LINES = 0.6  # from a text to the extension line of another dimension [mm on paper]
+_BELOW = 0.6  # of the line under the words of a leader, which other lines keep off [mm on paper]
 _FIRST = 10.0  # from the view to its first dimension line [mm on paper]
 _MOST_LANES = 40
+_MORE_LANES = 5  # that are looked at for words that no line crosses
 _STEMS = range(2, 40, 3)  # lengths of a datum's stem that are tried [mm on paper]
 _MOST_ALIKE = 8  # other arcs that are tried
 _AT_ONCE = 120  # places whose room is looked up at once
@@ -96,6 +100,18 @@ class PlacedDimension:
     datum: DatumPlace | None = None
 
 
+@dataclass(frozen=True)
+class LanePlace:
+    """The place of a dimension in a lane: its line's level, its words' middle, and what crosses the words."""
+
+    number: int
+    level: float
+    middle: float
+    crossings: int
+    box: Rectangle
+    stem: DatumPlace | None
+
+
 Try = tuple[Rectangle, PlacedDimension, list[list[Point]]]
 """A place of words, the dimension with it, and the lines that it draws on the paper."""
 
@@ -150,38 +166,59 @@ class DimensionLayout:
         place, top = self.plan.paper((along, high))
         middle = top + 2.5 + half
         self.room.add((place - GAP - label.height(TEXT) - 0.5, middle - half, place + 0.5, middle + half))
-        return self._laned(moved, label, 1, place, (ends[0], ends[1]), middle, 0.0)
+        return self._laned(moved, 1, place, (ends[0], ends[1]), middle, 0.0)
 
     def _in_lanes(self, lane: Lane) -> Iterator[PlacedDimension]:
         right = self.plan.beside if lane.is_of_end else 0.0
-        ends = [sorted(p[lane.along] for p in self._on_paper(one, right)) for one in lane.dimensions]
+        points = ([p[lane.along] for p in self._on_paper(one, right)] for one in lane.dimensions)
+        ends = [(min(some), max(some)) for some in points]
         reached = [_MOST_LANES] * len(ends)  # the lanes up to which extension lines lead; at first all
-        for n, (one, (low, high)) in enumerate(zip(lane.dimensions, ends, strict=True)):
-            label = label_of(one)
-            for number in range(_MOST_LANES):
+        for n, (one, span) in enumerate(zip(lane.dimensions, ends, strict=True)):
+
+            def others(number: int) -> list[float]:
                 pairs = (pair for pair, reach in zip(ends, reached, strict=True) if reach >= number)
-                others = [end for pair in pairs for end in pair]
-                away = lane.edge + lane.out * (_FIRST + LANE * number) / self.plan.scale
-                place = self.plan.paper((away, away), right)[1 - lane.along]
-                middle = self._middle(label, lane.along, place, (low, high), others)
-                box = self._box_in_lane(label, lane.along, place, (low, high), middle)
-                stem = self._stem(lane, place, (low, high), box, others) if one.name in self.datums else None
-                if self.room.is_clear(box, 0.1) and (stem or one.name not in self.datums):
-                    break
-            else:
+                return [end for pair in pairs for end in pair]
+
+            every = (
+                self._lane_place(one, lane, number, span, others(number)) for number in range(_MOST_LANES)
+            )
+            chosen = _least_crossed(each for each in every if each)
+            if chosen is None:
                 self.faults += 1
-            reached[n] = number
-            self.room.add(box)
-            laned = self._laned(one, label, lane.along, place, (low, high), middle, right)
-            yield self._with_datum(laned, stem) if stem else laned
+                chosen = self._lane_place(one, lane, _MOST_LANES, span, [], is_forced=True)
+            assert chosen
+            reached[n] = chosen.number
+            self.room.add(chosen.box)
+            laned = self._laned(one, lane.along, chosen.level, span, chosen.middle, right)
+            yield self._with_datum(laned, chosen.stem) if chosen.stem else laned
+
+    def _lane_place(
+        self,
+        one: Dimension,
+        lane: Lane,
+        number: int,
+        span: tuple[float, float],
+        others: Sequence[float],
+        *,
+        is_forced: bool = False,
+    ) -> LanePlace | None:
+        """Return the place of a dimension in a lane if it is clear, or forced."""
+        right, label = self.plan.beside if lane.is_of_end else 0.0, label_of(one)
+        away = lane.edge + lane.out * (_FIRST + LANE * number) / self.plan.scale
+        level = self.plan.paper((away, away), right)[1 - lane.along]
+        crossings, middle = self._middle(label, lane.along, level, span, others)
+        box = self._box_in_lane(label, lane.along, level, span, middle)
+        stem = self._stem(lane, level, span, box, others) if one.name in self.datums else None
+        is_clear = self.room.is_clear(box, 0.1) and (stem or one.name not in self.datums)
+        return LanePlace(number, level, middle, crossings, box, stem) if is_clear or is_forced else None
 
     def _middle(
         self, label: Label, along: int, place: float, ends: tuple[float, float], others: Sequence[float]
-    ) -> float:
-        """Return the centre of a text along its dimension line: between the ends, or beyond one end.
+    ) -> tuple[int, float]:
+        """Return how many lines cross a text on its dimension line, and its centre along that line.
 
-        It is the nearest place at which the fewest lines cross the text: extension lines of the same side,
-        which are at `others`, and lines that the sheet holds already.
+        The centre is between the ends, or beyond one end: the nearest place at which the fewest lines cross
+        the text. These are extension lines of the same side, at `others`, and lines that the sheet holds.
         """
         (low, high), width = ends, label.width(TEXT)
         half, tries = width / 2, list[float]()
@@ -196,7 +233,7 @@ class DimensionLayout:
             (x, u), (y, v) = (sides, (at - half, at + half))[:: 1 if along else -1]
             return _crossings(at - reach, at + reach, others) + self.room.is_crossed((x, y, u, v))
 
-        return min(tries, key=crossings)
+        return min((crossings(at), number, at) for number, at in enumerate(tries))[::2]
 
     def _stem(
         self, lane: Lane, place: float, ends: tuple[float, float], own: Rectangle, others: Sequence[float]
@@ -222,7 +259,6 @@ class DimensionLayout:
     def _laned(
         self,
         one: Dimension,
-        label: Label,
         along: int,
         place: float,
         ends: tuple[float, float],
@@ -230,6 +266,7 @@ class DimensionLayout:
         right: float,
     ) -> PlacedDimension:
         """Return a dimension with its line at a given position in its lane."""
+        label = label_of(one)
         line = tuple((place, end) if along else (end, place) for end in ends)
         words = None
         if label.upper or abs(middle - (ends[0] + ends[1]) / 2) > _CENTRED:
@@ -334,7 +371,7 @@ class DimensionLayout:
                     tip = centre[0] + radius * u, centre[1] + radius * v
                     left = x - width if x < tip[0] else x
                     low = y + GAP + TEXT / 2 - height / 2
-                    box = left - 0.5, min(low, y + 0.2), left + width + 0.5, low + height
+                    box = left - 0.5, min(low, y - _BELOW), left + width + 0.5, low + height
                     end = left if x < tip[0] else left + width, y
                     words = self.plan.at(left + width / 2, y + GAP + TEXT / 2)
                     placed = PlacedDimension(
@@ -412,6 +449,17 @@ class DimensionLayout:
                 if not crossed(own, box, GAP).any():
                     placed = PlacedDimension(one, label, self.plan.at(*middle), self.plan.at(x, y), right)
                     yield box, placed, [[middle, (x, y)]]
+
+
+def _least_crossed(places: Iterable[LanePlace]) -> LanePlace | None:
+    """Return the first place whose words no line crosses, or of the first few that with the fewest lines."""
+    best: LanePlace | None = None
+    for place in islice(places, _MORE_LANES):
+        if best is None or place.crossings < best.crossings:
+            best = place
+        if best.crossings == 0:
+            break
+    return best
 
 
 def _polar(corner: Point, radius: float, turn: float) -> Point:

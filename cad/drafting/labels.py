@@ -46,12 +46,13 @@ class Label:
 def label_of(dimension: Dimension) -> Label:
     """Return the label of a dimension.
 
-    A diameter has the prefix Ø, a repeated size its count, and a reference size stands in brackets.
+    A diameter has the prefix Ø, that of a ball SØ, a repeated size its count. A reference size stands in
+    brackets.
     """
     measure = dimension.measure
     several = f"{measure.count}×" if measure.count > 1 else ""
     is_round = measure.form in ("circle", "arc")  # these have their signs from the DIMENSION
-    sign = "Ø" if measure.sort == "diameter" and not is_round else ""
+    sign = "S" * measure.is_spherical + "Ø" * (measure.sort == "diameter" and not is_round)
     own = {"circle": "Ø", "arc": "R"}.get(measure.form, "")
     number = own + number_of(measure.value, _decimals(measure))
     text = f"{several}{sign}<>{'×45°' if measure.sort == 'chamfer' else ''}"

@@ -38,7 +38,8 @@ class Lanes:
     end: View
     left: Side
     right: Side
-    beyond: Side  # to the right of the end view
+    between: Side  # to the left of the end view
+    beyond: Side  # to the right of it
     below: Side
     end_below: Side
     above: Side
@@ -48,7 +49,7 @@ class Lanes:
     @staticmethod
     def sorted(dimensions: Iterable[Dimension], section: View, end: View) -> Lanes:
         """Return the dimensions, each on the side nearest to its feature."""
-        sides = Lanes(section, end, [], [], [], [], [], [], [], [])
+        sides = Lanes(section, end, [], [], [], [], [], [], [], [], [])
         (left, low), (right, high) = section.box
         middle = (left + right) / 2, (low + high) / 2
         for one in dimensions:
@@ -63,11 +64,13 @@ class Lanes:
         place = sum(x for x, _ in measure.points) / len(measure.points)
         match measure.form, measure.place:
             case "up", "end":
-                return self.beyond, 1
+                at_left, at_right = self._away(one)
+                return (self.between, -1) if at_left + _CLEAR < at_right else (self.beyond, 1)
             case "up", _:
                 return (self.right, 1) if place > middle[0] else (self.left, -1)
             case "across", "end":
-                return (self.end_above, 1) if self._is_high(one) else (self.end_below, -1)
+                at_foot, at_top = self._away(one)
+                return (self.end_above, 1) if at_top + _CLEAR < at_foot else (self.end_below, -1)
             case "across", _:
                 feet = [y for _, y in measure.points]
                 if measure.sort != "diameter":
@@ -75,25 +78,27 @@ class Lanes:
                 return (self.above, 1) if min(feet) > middle[1] else (self.below, -1)
         return self.local, 0
 
-    def _is_high(self, one: Dimension) -> bool:
-        """Return whether a width in the end view is nearer to the top of that view than to its bottom."""
-        (_, low), (_, high) = self.end.box
-        reaches = [_edge_at(one, self.end, number) for number in (0, 1)]
-        tops, feet = [high - end for _, end in reaches], [start - low for start, _ in reaches]
-        return one.measure.sort == "width" and sum(tops) + _CLEAR < sum(feet)
+    def _away(self, one: Dimension) -> tuple[float, float]:
+        """Return how far a size's edges are from the left or lower side of the end view, and the other."""
+        across = int(one.measure.form == "across")
+        low, high = (corner[across] for corner in self.end.box)
+        ranges = [edge for number in (0, 1) if (edge := _edge_at(one, self.end, number))[0] < edge[1]]
+        return sum(start - low for start, _ in ranges), sum(high - stop for _, stop in ranges)
 
     @property
     def counts(self) -> tuple[int, int, int, int, int]:
         """Return the largest number of lanes: left, between the views, right, below, above."""
         below = max(len(self.below), len(self.end_below))
         above = max(len(self.above), min(len(self.end_above), 4))
-        return len(self.left), len(self.right), len(self.beyond), min(below, 4), above
+        between = len(self.right) + len(self.between)
+        return len(self.left), between, len(self.beyond), min(below, 4), above
 
     def sides(self) -> Iterator[Lane]:
         """Yield every side with its dimensions, those of the end view first."""
         (left, low), (right, high) = self.section.box
-        (_, end_low), (end_right, end_high) = self.end.box
+        (end_left, end_low), (end_right, end_high) = self.end.box
         every = (
+            (self.between, 1, end_left, -1, True),
             (self.beyond, 1, end_right, 1, True),
             (self.end_below, 0, end_low, -1, True),
             (self.end_above, 0, end_high, 1, True),

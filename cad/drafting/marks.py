@@ -24,6 +24,7 @@ LETTERS = 5.0  # height of the letters that name a section [mm on paper]
 _OVER = 3.0  # of a centre line beyond what it is the centre of [mm on paper]
 _LEAST = 0.8  # radius of a circle that gets centre lines [mm on paper]
 _MOST = 80  # centre lines of a view
+_OFF = 1.0  # from the letters of a section to other words and lines [mm on paper]
 _CLEAR = 1e-5
 
 Segment = tuple[Point, Point]
@@ -95,11 +96,11 @@ def _axes(view: View, bodies: Sequence[Body], over: float) -> Iterator[Segment]:
 
 
 def _middles(view: View, plan: Plan) -> dict[Point, float]:
-    """Return the centres of circles other than the shaft's, each with the largest radius about it."""
+    """Return the centres of circles, each with the largest radius about it."""
     radii: dict[Point, float] = {}
     for circle in view.circles:
         middle = round(circle.centre[0], 4) + 0.0, round(circle.centre[1], 4) + 0.0
-        if circle.radius * plan.scale >= _LEAST and (view.edges or middle != (0.0, 0.0)):
+        if circle.radius * plan.scale >= _LEAST:
             radii[middle] = max(radii.get(middle, 0.0), circle.radius)
     return radii
 
@@ -114,7 +115,7 @@ def _crosses(view: View, plan: Plan, over: float) -> Iterator[Segment]:
 
 def _pitched(view: View, plan: Plan, over: float) -> tuple[list[float], Iterator[Segment]]:
     """Return the radii of pitch circles about the shaft, and the centre lines of all holes."""
-    middles = _middles(view, plan)
+    middles = {at: radius for at, radius in _middles(view, plan).items() if at != (0.0, 0.0)}
     turns = defaultdict[float, list[float]](list)
     for x, y in middles:
         turns[round(hypot(x, y), 3)].append(round(degrees(atan2(y, x)), 3) % 360)
@@ -181,9 +182,26 @@ def cutting_line(page: Page, section: View, end: View, room: Room) -> None:
         stop = start + 6.0 * out
         page.line([(middle, start), (middle, stop)], "CUTTING")
         page.symbol(arrow((middle - 9.0, stop), (middle, stop), 4.0))
-        page.write("A", middle + 1.5, stop - LETTERS / 2, LETTERS)
-        room.add((middle + 1.0, stop - LETTERS / 2 - 0.5, middle + 1.5 + width, stop + LETTERS / 2 + 0.5))
+        left = clear_of_extensions((middle + 1.5, middle - 10.5 - width), width, plan, is_above=out > 0)
+        page.write("A", left, stop - LETTERS / 2, LETTERS)
+        room.add((left - 0.5, stop - LETTERS / 2 - 0.5, left + width, stop + LETTERS / 2 + 0.5))
         room.add((middle - 9.5, min(start, stop) - 0.5, middle + 0.5, max(start, stop) + 1.0))
+
+
+def clear_of_extensions(lefts: Sequence[float], width: float, plan: Plan, *, is_above: bool) -> float:
+    """Return the left side of a letter above or below the views that the fewest extension lines cross.
+
+    The letters come before the dimensions, whose extension lines lead past them wherever their lanes are.
+    """
+    lanes = plan.lanes
+    of_section, of_end = (lanes.above, lanes.end_above) if is_above else (lanes.below, lanes.end_below)
+    ends = [
+        plan.paper(point, right)[0]
+        for side, right in ((of_section, 0.0), (of_end, plan.beside))
+        for one in side
+        for point in one.measure.points
+    ]
+    return min(lefts, key=lambda left: sum(left - _OFF < end < left + width + _OFF for end in ends))
 
 
 def section_label(page: Page, view: View, letter: str, room: Room, least: float = 3.0) -> None:
@@ -194,6 +212,9 @@ def section_label(page: Page, view: View, letter: str, room: Room, least: float 
     x, y = page.plan.paper(((left + right) / 2, high))
     x, y = x - width / 2, y + least
     ways = sorted(product(range(-30, 31, 5), range(120)), key=lambda way: 3 * abs(way[0]) + way[1])
-    boxes = ((x + aside, y + up, x + aside + width, y + up + LETTERS + 1.0) for aside, up in ways)
-    place = room.first((box, (box[0], box[1] + 0.5)) for box in boxes)
+    boxes = (
+        (x + aside - _OFF, y + up - _OFF, x + aside + width + _OFF, y + up + LETTERS + _OFF)
+        for aside, up in ways
+    )
+    place = room.first((box, (box[0] + _OFF, box[1] + _OFF)) for box in boxes)
     page.write(text, *(place or (x, y)), LETTERS)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from itertools import combinations
 from math import atan2, degrees, hypot, isclose
 from typing import Literal
@@ -45,6 +45,7 @@ class Measure:
     count: int = 1  # of equal parts that have it
     first: frozenset[Face] = frozenset()
     second: frozenset[Face] = frozenset()
+    is_spherical: bool = field(default=False, kw_only=True)
 
 
 def measures(
@@ -191,12 +192,19 @@ def _drilled(cylinder: Surface, section: View, count: int) -> Measure:
     """Return the diameter of a drilling in the plane of the section, measured at its outer mouth."""
     flat, away = section.frame.flat(cylinder.point), section.frame.flat(cylinder.direction)
     start = cylinder.point.dot(cylinder.direction)
-    reach = max(cylinder.reach, key=abs) - start
+    r, end = cylinder.diameter / 2, max(cylinder.reach, key=abs)
+    walls = (point for edge in section.edges if _are_off(edge, flat, away, r) for point in edge)
+    mouths = (start + (x - flat[0]) * away[0] + (y - flat[1]) * away[1] for x, y in walls)
+    reach = min(mouths, key=lambda mouth: abs(mouth - end), default=end) - start
     x, y = flat[0] + away[0] * reach, flat[1] + away[1] * reach
-    r = cylinder.diameter / 2
     points = (x - away[1] * r, y + away[0] * r), (x + away[1] * r, y - away[0] * r)
     form: Form = "across" if abs(away[0]) < _CLEAR else "aligned"
     return Measure("diameter", cylinder.diameter, "section", form, points, count, on(cylinder))
+
+
+def _are_off(points: Iterable[Point], foot: Point, way: Point, away: float) -> bool:
+    """Return whether points lie at a distance from a line, given by its foot and direction."""
+    return all(abs(abs((x - foot[0]) * way[1] - (y - foot[1]) * way[0]) - away) < _ARC for x, y in points)
 
 
 def length_between(seen: PartSurfaces, low: float, high: float, section: View) -> Measure:
@@ -269,8 +277,10 @@ def _of_arcs(section: View, standing: Sequence[Surface], counts: Mapping[str, in
         points = (arc.centre, arc.middle)
         faces = on(*(one for one in standing if _is_cut_in(one, arc, section.frame)))
         count = max((counts[part] for part, _ in faces), default=1)
-        if arc.whole or any(one.form == "sphere" and one.face in faces for one in standing):
-            yield Measure("diameter", 2 * arc.radius, "section", "circle", points, count, faces)
+        is_ball = any(one.form == "sphere" and one.face in faces for one in standing)
+        if arc.whole or is_ball:
+            diameter = Measure("diameter", 2 * arc.radius, "section", "circle", points, count, faces)
+            yield replace(diameter, is_spherical=is_ball)
         tubes = {one.face for one in standing if one.form == "torus" and one.face in faces}
         alike = [
             o for o in standing if tubes and o.form == "torus" and abs(o.diameter / 2 - arc.radius) < _CLEAR

@@ -25,6 +25,7 @@ _EMPTY, _REDUCED = 4.0, 0.5
 
 _BELOW = 1.8  # of the room above views that have others below them, from below to the middle
 _ROOM = 24.0  # around and between views, beside the dimensions
+_BESIDE = 3.0  # from a narrow dimension to its words, and from these to the next view [mm on paper]
 _LEADER = 10.0  # from a view to the words at the end of a leader [mm on paper]
 SCALES = [f * 10.0**n for n in range(3, -5, -1) for f in (5, 2, 1)]
 """The scales of ISO 5455, the largest first."""
@@ -78,9 +79,16 @@ def plans(
     (end_left, end_low), (end_right, end_high) = end.box
     across, bottom, top = right - left + end_right - end_left, min(low, end_low), max(high, end_high)
     sides = [n * LANE for n in lanes.counts]
-    between = max((_LEADER + label_of(one).width(TEXT) for one in lanes.local), default=0.0)
-    sides[1] += max(between - _ROOM, 0.0)
-    taken = 3 * _ROOM + sides[0] + sides[1] + sides[2], 2 * _ROOM + sides[3] + sides[4]
+    led = max((_LEADER + label_of(one).width(TEXT) for one in lanes.local), default=0.0)
+
+    def between(scale: float) -> float:
+        """Return the room between the views for lanes, leaders and words beside narrow dimensions."""
+        words = (_beyond(one, right, scale) for one in (*lanes.below, *lanes.above))
+        more = _LEADER if lanes.between else 0.0  # for leaders beside the lanes of both views
+        return max(_ROOM + more + sides[1], sides[1] + led, *words)
+
+    def taken(scale: float) -> tuple[float, float]:
+        return 2 * _ROOM + sides[0] + between(scale) + sides[2], 2 * _ROOM + sides[3] + sides[4]
 
     def share(format: Format, scale: float) -> float:
         return max(scale * across / format.room[0], scale * (top - bottom) / format.room[1])
@@ -89,7 +97,7 @@ def plans(
         (format, s)
         for format in FORMATS
         for s in SCALES
-        if s * across + taken[0] <= format.room[0] and s * (top - bottom) + taken[1] <= format.room[1]
+        if s * across + taken(s)[0] <= format.room[0] and s * (top - bottom) + taken(s)[1] <= format.room[1]
     ]
     wanted_share = min(FILLED + MORE * (len(wanted) + elsewhere), 0.5)
 
@@ -101,8 +109,16 @@ def plans(
     ordered = sorted(readable or fitting, key=lambda one: (cost(*one), -one[1]))
     for format, scale in ordered or [(FORMATS[-1], SCALES[-1])]:
         area, room = format.area, format.room
-        gap = (_ROOM + sides[1]) / scale
-        spare = (room[0] - scale * across - taken[0]) / 2, (room[1] - scale * (top - bottom) - taken[1]) / 2
+        gap, needed = between(scale) / scale, taken(scale)
+        spare = (room[0] - scale * across - needed[0]) / 2, (room[1] - scale * (top - bottom) - needed[1]) / 2
         x = left - (area[0] + _ROOM + sides[0] + spare[0]) / scale
         y = bottom - (area[1] + _ROOM + sides[3] + spare[1] * (_BELOW if below else 1.0)) / scale
         yield Plan(scale, right + gap - end_left, (x, y), lanes, format)
+
+
+def _beyond(one: Dimension, right: float, scale: float) -> float:
+    """Return how far the words beside a narrow dimension reach beyond the right side of a view [mm]."""
+    ends, width = sorted(x for x, _ in one.measure.points), label_of(one).width(TEXT)
+    if scale * (ends[-1] - ends[0]) > width:
+        return 0.0
+    return scale * (ends[-1] - right) + width + 2 * _BESIDE

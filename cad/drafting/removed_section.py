@@ -25,7 +25,7 @@ from cad.drafting.dimension_layout import DimensionLayout, NoRoom, PlacedDimensi
 from cad.drafting.labels import TEXT, label_of
 from cad.drafting.lanes import Lane
 from cad.drafting.letter_width import width_of
-from cad.drafting.marks import LETTERS, section_label
+from cad.drafting.marks import LETTERS, clear_of_extensions, section_label
 from cad.drafting.measures import Form, Measure, on
 from cad.drafting.page import Page
 from cad.drafting.parameter_match import Dimension, is_on, length_of, matched
@@ -216,9 +216,10 @@ def _mark_across(page: Page, room: Room, letter: str, station: float, section: V
         start, stop = y + 1.5 * out, y + 6.5 * out
         page.line([(x, start), (x, stop)], "CUTTING")
         page.symbol(arrow((x + 6.0, stop), (x, stop)))
-        page.write(letter, x - width - 1.0, stop - TEXT / 2, TEXT)
+        left = clear_of_extensions((x - width - 1.0, x + 7.0), width, page.plan, is_above=out > 0)
+        page.write(letter, left, stop - TEXT / 2, TEXT)
         ends = sorted((start, stop - TEXT / 2, stop + TEXT / 2))
-        box = x - width - 1.5, ends[0], x + 6.5, ends[-1]
+        box = min(left, x) - 0.5, ends[0], max(x + 6.5, left + width + 0.5), ends[-1]
         if not room.is_clear(box, 0.0):
             raise NoRoom
         room.add(box)

@@ -48,6 +48,7 @@ class Room:
         self.views: list[Rectangle] = []
         self.leaders: list[list[Point]] = []
         self._boxes, self._words, self._lines = _Rows(), _Rows(), _Rows()
+        self._strips = _Rows()  # of views
         self._drawn = _Rows()  # lines of dimensions, leaders and frames
         self._outlines, self._long = _Rows(), _Rows()  # of views: all pieces, and the long ones
 
@@ -85,9 +86,13 @@ class Room:
                         min(low, *at, *([v] if u == x else [])),
                         max(high, *at, *([v] if u == x else [])),
                     ]
-        for number, (low, high) in enumerate(reach):
-            if low <= high:
-                self._boxes.rows.append((left + number * step, low, left + (number + 1) * step, high))
+        strips = [
+            (left + number * step, low, left + (number + 1) * step, high)
+            for number, (low, high) in enumerate(reach)
+            if low <= high
+        ]
+        self._strips.rows += strips
+        self._boxes.rows += strips
 
     def add_line(self, points: Sequence[Point], *, is_drawn: bool = False) -> None:
         """Occupy a line through points; one that is drawn for a dimension is crossed by no leader."""
@@ -106,6 +111,10 @@ class Room:
         for one, other in pairwise(points):
             if dist(one, other) > _LONG:
                 self._long.add_line([one, other])
+
+    def is_in_view(self, point: Point) -> bool:
+        """Return whether a point lies between the lowest and the highest line of a view."""
+        return bool(_overlaps(np.array([(*point, *point)]), self._strips.array, 0.0).any())
 
     def is_free_within(self, box: Rectangle) -> bool:
         """Return whether a rectangle within a view is clear of its lines, of words and of other lines."""

@@ -167,8 +167,9 @@ def _laid(
     if placing.faults >= most:
         raise NoRoom
     controls = Controls(page, room, views, most - placing.faults)
-    for number, view, target in balloons(content.section, content.end, bodies):
-        controls.balloon(str(number), plan.paper(target, plan.beside if view is content.end else 0.0))
+    for number, view, points in balloons(content.section, content.end, bodies):
+        right = plan.beside if view is content.end else 0.0
+        controls.balloon(str(number), [plan.paper(point, right) for point in points])
     datum = controls.draw(declared, placed)
     faults = placing.faults + controls.faults
     return Laid(page, room, centres, placed, datum, faults, controls.crossed)

@@ -193,6 +193,8 @@ def table(page: Page, parameters: Mapping[str, str], unseen: Sequence[str], belo
     """Draw the table of parameters; return where it ends, with room left for `below` more rows."""
     left, top = page.plan.format.column
     left, top = left + 3, top - 7
+    if not parameters:
+        return top
     page.write("Parameters", left, top, 4.5)
     page.write("mm", left + _NAMES, top, _LETTERS)
     limits = limits_of(parameters)

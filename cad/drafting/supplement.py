@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, pairwise
-from math import cos, hypot, radians, sin
+from math import atan2, cos, degrees, dist, hypot, radians, sin
 
 from cad.drafting.curves import Point
 from cad.drafting.definition import AXIS, Definition, Station, hole_stations, nearest
@@ -15,6 +15,7 @@ from cad.drafting.parts_features import Hole
 from cad.drafting.views import View
 
 _CLEAR = 1e-4  # [mm, deg]
+_NEAR, _BESIDE = 0.05, 2.0  # from a direction to the end of an edge, and to a point of an outline [deg]
 _MOST = 60
 """Dimensions that are added: a sheet with more of them could not be read."""
 
@@ -220,12 +221,27 @@ class Supplement:
         return self._angle(min(apart)[1], one, count)
 
     def _angle(self, one: Station, other: Station, count: int = 1) -> Measure:
-        reach = max(abs(value) for corner in self.end.box for value in corner) / 2
-        legs = [(reach * cos(radians(at)), reach * sin(radians(at))) for _, at in (one, other)]
+        legs = [self._at(turn) for _, turn in (one, other)]
         if _apart(one, other) < 0:
             legs.reverse()
         points: tuple[Point, ...] = ((0.0, 0.0), *legs)
         return Measure("angle", abs(_apart(one, other)), "end", "angle", points, count)
+
+    def _at(self, turn: float) -> Point:
+        """Return the point in a direction from the shaft [deg] at which something is that lies there.
+
+        It is the centre of a hole, the end of an edge, or else the outline of the part.
+        """
+        curves = (*self.end.visible, *self.end.hidden)
+        open_ = (curve for curve in curves if dist(curve.points[0], curve.points[-1]) > _CLEAR)
+        ends = (point for curve in open_ for point in (curve.points[0], curve.points[-1]))
+        every = [circle.centre for circle in self.end.circles], [*ends], [p for c in curves for p in c.points]
+        for some, near in zip(every, (_NEAR, _NEAR, _BESIDE), strict=True):
+            along = [hypot(x, y) for x, y in some if hypot(x, y) > _CLEAR and _is_near((x, y), turn, near)]
+            if along:
+                break
+        reach = max(along, default=max(abs(value) for corner in self.end.box for value in corner) / 2)
+        return reach * cos(radians(turn)), reach * sin(radians(turn))
 
     def _overall(self, every: Iterable[Dimension]) -> Iterator[Dimension]:
         """Yield the overall length, for reference, if no dimension shows it."""
@@ -241,6 +257,11 @@ class Supplement:
 def _apart(one: Station, other: Station) -> float:
     """Return the angle from one direction to another [deg], from -180 to 180."""
     return (other[1] - one[1] + 180) % 360 - 180
+
+
+def _is_near(point: Point, turn: float, near: float) -> bool:
+    """Return whether the direction to a point from the origin is a given one, within an angle [deg]."""
+    return abs(_apart(("turn", degrees(atan2(point[1], point[0]))), ("turn", turn))) < near
 
 
 def joined_spans(definition: Definition, spans: Iterable[Point]) -> None:

@@ -8,6 +8,7 @@ from math import cos, dist, inf, pi, radians, sin
 from cad.drafting.curves import Point
 from cad.drafting.dimension_layout import PlacedDimension
 from cad.drafting.plan import Plan
+from cad.drafting.room import Room
 from cad.drafting.views import View
 
 _CLEAR = 1e-4  # [mm]
@@ -20,7 +21,9 @@ _SHARES = (0.5, 0.25, 0.75)  # of an edge
 _TURNS = range(0, 360, 30)  # [deg] round a circle
 
 
-def targets(placed: PlacedDimension, views: Sequence[tuple[View, float]], plan: Plan) -> list[Point]:
+def targets(
+    placed: PlacedDimension, views: Sequence[tuple[View, float]], plan: Plan, room: Room
+) -> list[Point]:
     """Return the places on the paper, the best ones first."""
     measure = placed.dimension.measure
     if placed.ends is None:
@@ -31,7 +34,8 @@ def targets(placed: PlacedDimension, views: Sequence[tuple[View, float]], plan: 
         radius, turns = dist(centre, on), [pi * turn / 180 for turn in _TURNS]
         return [on, *((centre[0] + radius * cos(t), centre[1] + radius * sin(t)) for t in turns)]
     along = 1 if measure.form == "up" else 0
-    found = [p for point in measure.points for p in _on_extension(point, placed, plan, along)]
+    extended = (place for point in measure.points for place in _on_extension(point, placed, plan, along))
+    found = [place for place in extended if not room.is_in_view(place)]
     edges = [edge for view, right in views if right == placed.right for edge in view.straight]
     every = [point for one in (measure, *placed.dimension.alike[:_MOST_ALIKE]) for point in one.points]
     on_edges = [p for point in every for p in _on_edges(point, placed, edges, plan, along)]
@@ -44,6 +48,16 @@ def targets(placed: PlacedDimension, views: Sequence[tuple[View, float]], plan: 
         on_edges = [p for q in measure.points for p in _on_edges(q, placed, straight, plan, along, inf)]
     found += [*on_edges, *_on_arcs(placed, views, plan)]
     return found or [plan.paper(point, placed.right) for point in measure.points]
+
+
+def hidden_targets(placed: PlacedDimension, views: Sequence[tuple[View, float]], plan: Plan) -> list[Point]:
+    """Return places on hidden edges, as of the second of two equal holes of which one is cut open."""
+    if placed.ends is None:
+        return []
+    along = 1 if placed.dimension.measure.form == "up" else 0
+    edges = [edge for view, right in views if right == placed.right for edge in view.unseen]
+    points = [point for one in placed.dimension.alike[:_MOST_ALIKE] for point in one.points]
+    return [place for point in points for place in _on_edges(point, placed, edges, plan, along)]
 
 
 def _on_arcs(placed: PlacedDimension, views: Sequence[tuple[View, float]], plan: Plan) -> Iterator[Point]:

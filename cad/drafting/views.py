@@ -122,7 +122,7 @@ def _end(placed: Sequence[_PlacedPart], frame: Frame, section: Frame) -> View:
         axes=_axes_across(placed, frame),
         cut=faces,
         visible=[curve for curve in seen.visible if not is_side(curve)],
-        hidden=[curve for curve in seen.hidden if not is_side(curve)],
+        hidden=[c for c in seen.hidden if not is_side(c) and not any(cut.holds(c) for cut in cuts)],
         broken=[curve for curve in seen.visible if is_side(curve)],
     )
 

@@ -201,6 +201,7 @@ CALLS = {
     f"POST {DESIGN}/decide": Call({}),
     f"POST {DESIGN}/solve": Call(LENGTH),
     f"POST {DESIGN}/tolerance": Call({}),
+    f"POST {API}/answer": Call({"design": "shell", "free": {"ratio": {"between": ["0.3", "0.9"]}}}),
     f"POST {DESIGN}/labels": Call({"add_tags": ["attacked"]}),
     f"GET {DESIGN}/compare": Call(more={"params": {"revision": "1", "with": "1"}}),
     f"PUT {DESIGN}/variants": Call({"variants": {"small": {"length": "9 mm"}}}, copy=design),

@@ -107,7 +107,7 @@ def balloons_of(id: str) -> dict[str, tuple[bool, tuple[float, float]]]:
     bodies = read_step(sized(models().get(id, 1), 1.0).step)
     section, end = views(bodies)
     every = balloons(section, end, bodies)
-    return {bodies[number - 1].name: (view is end, point) for number, view, point in every}
+    return {bodies[number - 1].name: (view is end, points[0]) for number, view, points in every}
 
 
 def test_a_balloon_points_to_a_view_that_shows_its_part() -> None:

@@ -109,7 +109,7 @@ def test_dimensions_are_drawn_with_their_numbers(drawing: Drawing) -> None:
         reported = "".join(
             part.plain_text() for part in entity.virtual_entities() if part.dxftype() == "MTEXT"
         )
-        number = reported.removesuffix("×45°").strip("()°").rpartition("×")[2].lstrip("ØR")
+        number = reported.removesuffix("×45°").strip("()°").rpartition("×")[2].lstrip("SØR")
         assert float(number) == pytest.approx(entity.get_measurement(), abs=5.1e-4), reported
 
 

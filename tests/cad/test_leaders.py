@@ -1,4 +1,4 @@
-"""No leader crosses a dimension line or a foreign view; no words overlap, with tolerances or without."""
+"""No leader crosses a dimension line or a foreign view, no words overlap, and no line crosses words."""
 
 from itertools import pairwise
 from math import dist, hypot
@@ -12,7 +12,7 @@ from cad.catalogue import models
 from cad.drafting.content import declared_of
 from cad.drafting.dimension_layout import GAP
 from cad.drafting.labels import TEXT
-from cad.drafting.room import overlap
+from cad.drafting.room import around, crossed, overlap
 from cad.drafting.sheet import laid_out
 from cad.header import read_header
 from cad.model import CadModel
@@ -54,6 +54,18 @@ def away(point, box) -> float:
     return hypot(max(left - point[0], point[0] - right, 0), max(low - point[1], point[1] - high, 0))
 
 
+def words_of(placed, plan):
+    """The rectangle of a dimension's words beside its line, on the paper."""
+    (x, y), (u, v) = placed.ends
+    across, up = placed.label.width(TEXT), placed.label.height(TEXT)
+    above = GAP + up / 2
+    if placed.words is not None:
+        middle = plan.paper(placed.words)
+    else:
+        middle = ((x + u) / 2 - above, (y + v) / 2) if x == u else ((x + u) / 2, (y + v) / 2 + above)
+    return around(middle, up, across) if x == u else around(middle, across, up)
+
+
 def sides(box):
     left, low, right, high = box
     corners = [(left, low), (right, low), (right, high), (left, high)]
@@ -70,6 +82,10 @@ def test_leaders_keep_off_dimension_lines_and_foreign_views(model: type[CadModel
         home = min(sheet.room.views, key=lambda view: away(leader[0], view))
         foreign = [view for view in sheet.room.views if view is not home and not is_in(leader[0], view)]
         assert not [view for view in foreign if any(cross(leader, side) for side in sides(view))], leader
+    for placed in (one for one in sheet.placed if one.ends):
+        box = words_of(placed, sheet.page.plan)
+        assert not crossed(sheet.room._lines.array, box, -0.15).any(), placed.dimension.name
+        assert not crossed(sheet.room._outlines.array, box, -0.1).any(), placed.dimension.name
     words = sheet.room.words
     overlapping = [(a, b) for n, a in enumerate(words) for b in words[:n] if overlap(a, b, -0.2)]
     assert overlapping == []
@@ -119,3 +135,32 @@ def test_the_words_of_a_narrow_angle_stand_on_its_arc(rod) -> None:
     half = dist(one, other) * plan.scale / 2
     beyond = abs(placed.words[0] - shifted[0]) * plan.scale - half
     assert 0 < beyond < placed.label.width(TEXT) / 2 + 10  # and begin soon after a leg
+
+
+def test_a_height_at_the_left_of_the_end_view_stands_there() -> None:
+    """At its right the extension lines of the saddle height would lead through the bolt."""
+    _, sheet = laid(models().get("bearing_housing", 1), 0.0)
+    view = max(sheet.room.views)
+    assert [at for at, _ in one_of(sheet, "saddle_height").ends] == pytest.approx([view[0] - 10] * 2)
+    assert min(at for at, _ in one_of(sheet, "bolt_hole_depth").ends) > view[2]
+
+
+def test_broken_out_sections_hide_nothing() -> None:
+    """Behind the bolt that is not cut, the dowel's edges are not dashed; beside it, in the view, they are."""
+    content, _ = laid(models().get("bearing_housing", 1), 0.0)
+    (low, high) = (pick(p[0] for side in content.end.broken for p in side.points) for pick in (min, max))
+    assert [curve for curve in content.end.hidden if all(p[0] < low for p in curve.points)]
+    assert not [curve for curve in content.end.hidden if all(low < p[0] < high for p in curve.points)]
+
+
+def test_the_leg_of_an_angle_begins_at_its_hole() -> None:
+    content, _ = laid(models().get("thrust_washer", 1), 0.0)
+    (angle,) = [one for one in content.dimensions if one.measure.form == "angle" and one.measure.count == 1]
+    assert min(abs(dist(leg, (0, 0)) - 27) for leg in angle.measure.points[1:]) < 1e-3
+
+
+@pytest.mark.slow
+def test_the_view_along_a_crankshaft_hides_all_but_its_bolt_holes() -> None:
+    content, _ = laid(models().get("crankshaft", 1), 0.0)
+    radii = {round(dist(curve.arc.centre, (0, 0)), 2) for curve in content.end.hidden}
+    assert radii == {34}

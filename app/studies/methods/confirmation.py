@@ -19,6 +19,11 @@ WITHIN = 1e-3
 TINY = 1e-9
 """Differences below this share of a column's median are ignored."""
 
+FAR = 0.3
+"""Smallest distance in the unit cube of a challenger from all confirmed points."""
+UNSEEN = 0.3
+"""Relative difference between the levels that is possible far from all confirmed points of a young search."""
+
 State = Literal["settled", "unconfirmed", "undecided", "infeasible", "not_settled"]
 
 
@@ -140,6 +145,34 @@ class Run:
         unit = self.scanned.unit[rows]
         apart = np.linalg.norm(unit[:, None] - np.array(self.surface.places), axis=2).min(axis=1)
         return self.problem.space.snapped(unit[[int(apart.argmax())]])
+
+    def challenger(self, done: Sequence[Round], *, is_first: bool) -> Array | None:
+        """Return the best predicted point that is feasible and far from all confirmed ones, shape (1, d).
+
+        Return None if the levels would have to differ there by more than seems possible to make it the best:
+        by `UNSEEN` at the first challenger, later by half of what their ratio differs between known points.
+        """
+        seen = self.surface.seen(self.scanned.unit, self.scanned.columns)
+        unit = self.problem.space.snapped(self.scanned.unit)
+        apart = np.linalg.norm(unit[:, None] - np.array(self.surface.places), axis=2).min(axis=1)
+        rows = np.flatnonzero(seen.complete & (seen.violation == 0) & (apart >= FAR))
+        if not len(rows):
+            return None
+        chosen = rows[seen.objectives[rows, 0].argmin()]
+        promise = float(seen.objectives[chosen, 0])
+        apart_by = UNSEEN if is_first else self.surface.ratio_spread / 2
+        return unit[[chosen]] if promise - apart_by * abs(promise) < self._best(done) else None
+
+    def promises_more(self, unit: Array, done: Sequence[Round]) -> bool:
+        """Return whether a point, shape (d,), is predicted to be better than all confirmed ones."""
+        seen, least = self.surface(unit[None]), self._best(done)
+        is_better = float(seen.objectives[0, 0]) < least - self._within * abs(least)
+        return is_better and bool(seen.violation[0] <= 0)
+
+    def _best(self, done: Sequence[Round]) -> float:
+        """Return the least confirmed objective that meets all criteria, with its sense."""
+        sense = float(self.problem.senses[0])
+        return min(sense * float(one.confirmed[0]) for one in done if one.is_met)
 
     def learn(self, unit: Array, rounds: Sequence[Round], fine: Columns) -> None:
         """Update the corrections with the latest confirmed points.

@@ -99,6 +99,15 @@ class CorrectedAnswer:
             share = width / np.abs(fine.values[0])
         self.guards.append(np.where(np.isfinite(share), np.maximum(share, 0.0), 0.0))
 
+    @property
+    def ratio_spread(self) -> float:
+        """Return by how much the ratio of both levels' first objective differs between confirmed points."""
+        before, after = np.array(self.coarse)[:, 0], np.array(self.fine)[:, 0]
+        with np.errstate(all="ignore"):
+            ratios = np.log(after / before)
+        ratios = ratios[np.isfinite(ratios)]
+        return float(np.ptp(ratios)) if len(ratios) else 0.0
+
     def is_known(self, unit: Array) -> bool:
         """Return whether a point, shape (d,), is close to a confirmed one."""
         return any(float(np.linalg.norm(unit - place)) < CLOSE for place in self.places)

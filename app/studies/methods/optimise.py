@@ -95,17 +95,39 @@ def optimise(
     return optimised_run(Run(problem, explore, confirm, seed, within), rounds)
 
 
-def optimised_run(run: Run, rounds: int = ROUNDS) -> Optimum:
-    """Return the optimum of a run that has not begun; the run then holds the corrections."""
+def optimised_run(run: Run, rounds: int = ROUNDS, challenges: int = 0) -> Optimum:
+    """Return the optimum of a run that has not begun; the run then holds the corrections.
+
+    Each of the `challenges` confirms the best point far from all confirmed ones after the search has settled,
+    and continues it: the ratio of the levels there may make another valley the better one.
+    """
     done: list[Round] = []
-    state: State | None = None
-    while state is None and len(done) < rounds:
-        unit = _next(run)
-        (confirmed,), fine = run.confirmed(unit)
-        done.append(confirmed)
-        state = _state(done)
-        run.learn(unit, [confirmed], fine)
+    state = _settle(run, done, rounds)
+    for number in range(challenges):
+        if (
+            state not in ("settled", "unconfirmed")
+            or (unit := run.challenger(done, is_first=not number)) is None
+        ):
+            break
+        _confirm(run, unit, done)
+        if run.promises_more(best(run.surface, run.scanned, tuple(run.surface.places[-2:])).unit, done):
+            state = _settle(run, done, len(done) + rounds)
     return _optimum(run, done, state)
+
+
+def _settle(run: Run, done: list[Round], most: int) -> State | None:
+    """Confirm optima until the levels agree or there are `most` rounds; return the state, None if open."""
+    state: State | None = None
+    while state is None and len(done) < most:
+        _confirm(run, _next(run), done)
+        state = _state(done)
+    return state
+
+
+def _confirm(run: Run, unit: Array, done: list[Round]) -> None:
+    (confirmed,), fine = run.confirmed(unit)
+    done.append(confirmed)
+    run.learn(unit, [confirmed], fine)
 
 
 def _next(run: Run) -> Array:
