@@ -110,7 +110,8 @@ class TestDepth:
         while len(links) <= DEEPEST + 1 and (link := next(iter(link.get("because", ())), None)):
             links.append(link)
         assert [link["kind"] for link in links] == ["relation"] * DEEPEST + ["deeper"]
-        assert links[-1]["value"]["value"] == pytest.approx(0.011)
+        assert links[-1]["value"]["unit"] == "mm"
+        assert links[-1]["value"]["value"] == pytest.approx(11)
         page = http.get(f"/designs/{design}/explain/size", timeout=HANG)
         assert "depends on more values than are shown" in page.text
 

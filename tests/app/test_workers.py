@@ -8,6 +8,7 @@ import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -115,6 +116,14 @@ def test_a_deadline_ends_what_never_ends(worker, function):
 def test_a_memory_bomb_is_refused(worker):
     with pytest.raises(MemoryExceeded, match="512 MiB"):
         worker.run(victims.memory_bomb, limits=USUAL)
+
+
+def test_a_memory_limit_of_the_operator_is_named_with_its_setting(worker):
+    limits = replace(USUAL, memory_setting="CRANKWRIGHT_JOB_MEMORY_MB")
+    with pytest.raises(MemoryExceeded, match=r"512 MiB .* may raise CRANKWRIGHT_JOB_MEMORY_MB"):
+        worker.run(victims.memory_bomb, limits=limits)
+    with pytest.raises(JobCrashed, match=r"512 MiB of memory.*CRANKWRIGHT_JOB_MEMORY_MB"):
+        worker.run(victims.segfault, limits=limits)
 
 
 @pytest.mark.parametrize(

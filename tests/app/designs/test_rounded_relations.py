@@ -109,9 +109,9 @@ class TestRefusals:
             (
                 {"wide": "= 0.47 * diameter rounded to 0.5 N"},
                 "wide",
-                "wide is in m, but it is rounded to 0.5 N",
+                "wide is in mm, but it is rounded to 0.5 N",
             ),
-            ({"wide": "= 0.47 * diameter rounded to 1"}, "wide", "give the step in m, such as 0.5 m"),
+            ({"wide": "= 0.47 * diameter rounded to 1"}, "wide", "give the step in mm, such as 0.5 mm"),
         ],
     )
     def test_a_step_of_another_dimension(self, change, name, said):
@@ -190,7 +190,7 @@ class TestSolve:
     def test_a_rounded_target_is_reached_before_its_rounding(self):
         (root,) = asked(bearing(), "20 mm", "30 mm", "wide", "23.4 mm").roots
         assert root.value == pytest.approx(23.4 / 0.47 / 2, rel=1e-9)
-        assert root.rounded.value == pytest.approx(23.5e-3)
+        assert root.rounded.value == pytest.approx(23.5)
 
     def test_without_rounding_on_the_way_nothing_is_said(self):
         solution = asked(bearing(), "20 mm", "30 mm", "diameter", "55 mm")

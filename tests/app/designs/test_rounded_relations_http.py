@@ -153,7 +153,7 @@ def test_slopes_of_a_study_name_the_rounding(http):
     study = done(http, made, method="sensitivity", kind="local", vary=vary, outputs=["wide", "free"])
     indices = study["result"]["indices"]
     assert "slope" not in indices["wide"]["bore"]
-    assert indices["free"]["bore"]["slope"]["value"] == pytest.approx(0.5e-3)  # m/mm
+    assert indices["free"]["bore"]["slope"]["value"] == pytest.approx(0.5)  # mm/mm
     (note,) = [one for one in study["result"]["notes"] if "wide" in one]
     assert note == (
         "wide has no slope over bore, which acts through wide (rounded up to 0.5 mm): it changes in steps"
