@@ -40,10 +40,9 @@ from app.designs.routes.variant_sheets import by_type as sheets_by_type
 from app.designs.routes.variant_sheets import router as variant_sheets
 from app.designs.routes.variants import router as variants
 from app.http import access, gate, openapi, problems, request_log
-from app.http.connections import AddressLimit
+from app.http.connections import AddressLimit, Pace
 from app.http.limits import BodyLimits
 from app.http.openapi import describe_interface, operation_id
-from app.http.pace import Pace
 from app.http.server import on_stop_signal
 from app.http.uploads import UploadFolder
 from app.identity.routes.audit import router as audit

@@ -28,8 +28,6 @@ RELAXED_BY = (0.01, 0.02, 0.05, 0.1, 0.2)
 MOST_BINDING = 3
 NEAR = 0.05
 """Margin relative to the limit below which a requirement may bind."""
-DROPPED = -1e9
-"""Reserve of a requirement that a test leaves out, relative to its limit."""
 FEASIBLE = 1e-7
 """Largest relative violation that counts as none."""
 GAIN = 1e-7
@@ -139,8 +137,9 @@ class Search:
 
     def _violation(self, run: Run, kept: Sequence[int]) -> float:
         """Return the least relative violation of some requirements alone."""
-        left_out = {n: DROPPED for n in range(len(self.problem.held)) if n not in kept}
-        return best(_with_reserve(run.surface, left_out), run.scanned).violation
+        return best(
+            _subset(run.surface, kept), replace(run.scanned, columns=_part(run.scanned.columns, kept))
+        ).violation
 
     def _reaches(self, number: int) -> Iterator[Reach]:
         """Yield the best value of a requirement while all others are met, if they can be met."""
@@ -181,6 +180,24 @@ def _with_reserve(surface: CorrectedAnswer, more: dict[int, float]) -> Corrected
     return other
 
 
+def _subset(surface: CorrectedAnswer, kept: Sequence[int]) -> CorrectedAnswer:
+    """Return a surface with some of the requirements only."""
+    whole, rows = surface.problem, list(kept)
+    problem = replace(whole, held=tuple(whole.held[n] for n in rows))
+    other = CorrectedAnswer(problem, lambda x: _part(surface.answer(x), rows), surface.scales[rows])
+    goals, held = len(whole.objectives), len(whole.held)
+    columns = [*range(goals), *(goals + n for n in rows), *(goals + held + n for n in rows)]
+    other.places, other.reserve = surface.places, surface.reserve[rows]
+    other.coarse, other.fine = ([row[columns] for row in part] for part in (surface.coarse, surface.fine))
+    other.guards = [row[rows] for row in surface.guards]
+    return other
+
+
+def _part(columns: Columns, kept: Sequence[int]) -> Columns:
+    """Return columns with some of the requirements only."""
+    return columns.with_sides(lambda side: side[:, list(kept)])
+
+
 def _margins(run: Run) -> Array:
     columns = run.scanned.columns
     return np.asarray(run.problem.signs * (columns.values - columns.limits) / run.scales)
@@ -189,4 +206,4 @@ def _margins(run: Run) -> Array:
 def _without(columns: Columns, number: int) -> Columns:
     """Return columns with the value of one requirement as the objective, and without this requirement."""
     kept = [n for n in range(columns.values.shape[1]) if n != number]
-    return replace(columns.with_sides(lambda side: side[:, kept]), objectives=columns.values[:, [number]])
+    return replace(_part(columns, kept), objectives=columns.values[:, [number]])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from app.answers.bodies import AnswerIn
 from app.answers.columns import Use
 from app.answers.request import Request
@@ -9,6 +11,8 @@ from app.answers.result import AnswerText
 from app.answers.schemas import DesignAnswer
 from app.answers.search import Search
 from app.designs.tasks import DesignTask
+from app.studies.methods.answers import AllRefused
+from templates.core.errors import InvalidInputs
 from templates.core.progress import report
 
 
@@ -25,7 +29,10 @@ def answer_request(task: DesignTask, revision: int | None, text: str) -> DesignA
     explored, confirmed = (Use(levels) for levels in request.levels)
     search = Search(columns.problem, columns.explored(explored), columns.at(confirmed))
     report(0.05, "search at the coarse levels")
-    optimum, run = search.run()
+    try:
+        optimum, run = search.run()
+    except AllRefused as error:
+        raise InvalidInputs(replace(fault, name="free") for fault in error.faults) from None
     answer = AnswerText(request, optimum, explored, confirmed, revision)
     if optimum.best.is_met:
         report(0.8, "sensitivities")

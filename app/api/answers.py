@@ -14,7 +14,7 @@ from app.api.responses import accepted, finished, written
 from app.api.services import Services
 from app.calculations.array_files import MEDIA_TYPES
 from app.http import problems
-from app.http.pace import PiecesResponse
+from app.http.connections import PiecesResponse
 from app.http.problem_kinds import INTERNAL
 from app.jobs.errors import JobNotFound
 from app.jobs.repository import FINAL, Job

@@ -1,4 +1,4 @@
-"""Limits on connections: uvicorn's protocol with limits on request headers and on slow clients.
+"""Connections: limits on request headers and on slow clients, and turns among large transfers.
 
 uvicorn sets no time limit on receiving request headers or on a client that reads its answer slowly. It
 accepts headers of any length, and copies all of them again whenever another piece arrives.
@@ -6,6 +6,10 @@ accepts headers of any length, and copies all of them again whenever another pie
 If the request target is more than a path, such as `GET http://evil.example/healthz`, uvicorn drops its host
 and serves the path, although RFC 9112 gives that host priority over the header `Host`. No client of this
 service sends such a target, so the protocol marks the request, and the guard refuses it.
+
+Requests begin one after another, and large bodies and answers are transferred in pieces, one per turn of the
+event loop. Otherwise each of twenty simultaneous uploads would transfer a piece in every turn, and a short
+request would wait for all of them several times.
 """
 
 from __future__ import annotations
@@ -16,17 +20,19 @@ import socket
 import struct
 from asyncio import Transport
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from ipaddress import IPv4Network, IPv6Address, IPv6Network, ip_address, ip_network
 
-from starlette.types import ASGIApp, Scope
+from fastapi import Response
+from starlette.types import ASGIApp, Receive, Scope, Send
 from uvicorn.protocols.http.httptools_impl import STATUS_LINE, HttpToolsProtocol
 
 from app.observation import logs, metrics
 from app.plain import JsonObject
+from app.workers.pieces import Pieces
 
 LONGEST_HEAD = 2**16  # bytes
 WHOLE = "crankwright.whole"
@@ -109,6 +115,36 @@ class ConnectionLimits:
     header_seconds: float
     write_seconds: float
     rate: float
+
+
+class Pace:
+    """Lets large transfers take turns; a transfer holds no turn while it waits for its client."""
+
+    def __init__(self) -> None:
+        self._turn = asyncio.Lock()
+
+    async def step(self) -> None:
+        """Wait for the turn to move the next piece."""
+        async with self._turn:
+            await asyncio.sleep(0)
+
+
+class PiecesResponse(Response):
+    """A response that is sent in pieces, each after the client has read most of the previous ones."""
+
+    def __init__(self, pieces: Pieces, pace: Pace, media_type: str = "application/json") -> None:
+        length: Mapping[str, str] = {"Content-Length": str(len(pieces))}
+        super().__init__(headers=length, media_type=media_type)
+        self.pieces, self.pace = pieces, pace
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Send the head, then the pieces."""
+        await send({"type": "http.response.start", "status": self.status_code, "headers": self.raw_headers})
+        last = len(self.pieces.parts) - 1
+        for number, piece in enumerate(self.pieces):
+            if number:
+                await self.pace.step()
+            await send({"type": "http.response.body", "body": piece, "more_body": number < last})
 
 
 class TimedProtocol(HttpToolsProtocol):

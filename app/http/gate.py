@@ -19,9 +19,8 @@ from starlette.middleware.exceptions import ExceptionMiddleware
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.http import access, guard
-from app.http.connections import AddressLimit
+from app.http.connections import AddressLimit, Pace
 from app.http.limits import AddressCrowded, BodyLimits, ServiceStopping
-from app.http.pace import Pace
 from app.http.strict_requests import HttpError
 from app.http.uploads import UploadRoute
 from app.identity.errors import IdentityError

@@ -25,8 +25,8 @@ from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 from starlette.types import Receive, Scope, Send
 
+from app.http.connections import Pace
 from app.http.openapi import CHANGES, operation_id
-from app.http.pace import Pace
 from app.observation.processor_time import metered
 from app.observation.secrets import MARK, holds_key, without_keys
 from app.plain import Json

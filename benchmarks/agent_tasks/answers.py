@@ -196,11 +196,15 @@ def _question(case: Case) -> str:
         f"between {one.lower:g} {one.unit} and {one.upper:g} {one.unit} in steps of {one.step:g} {one.unit}"
     )
     needs = " and ".join(
-        f"the {_title(case.use, output)} is at {'least' if sign == '>=' else 'most'} {limit:g} {unit}"
+        f"the {_title(case.use, output)} is at {'least' if sign == '>=' else 'most'} {_quantity(limit, unit)}"
         for output, sign, limit, unit in one.require
     )
     goal = f"the {one.sense} {_title(case.use, one.objective)}"
     return f"Find the {_title(case.use, one.free)} {span} that gives {goal} while {needs}."
+
+
+def _quantity(value: float, unit: str) -> str:
+    return f"{value:g}" if unit == "1" else f"{value:g} {unit}"
 
 
 def _stated(use: Use, link: str = "") -> str:

@@ -76,13 +76,15 @@ SEARCHES = [
     ),
     Case(
         "search-07",
-        THRUST,
-        search=searched("speed", (500.0, 3000.0, 50.0), "rpm", f"{H} >= 30 um", "least", POWER),
+        SLIDER,
+        search=searched("outlet_film", (20.0, 50.0, 1.0), "um", "load >= 2500 N", "least", POWER),
     ),
     Case(
         "search-08",
-        THRUST,
-        search=searched("load", (5.0, 60.0, 1.0), "kN", f"{H} >= 20 um", "greatest", "specific_load"),
+        LARGE,
+        search=searched(
+            "radial_load", (20.0, 120.0, 2.0), "kN", f"{H} >= 4 um", "greatest", "maximum_pressure"
+        ),
     ),
     Case(
         "search-09",
@@ -203,10 +205,10 @@ CONFLICTS = [
         12, SLIDER, "outlet_film", (20.0, 50.0, 1.0), "um", "load >= 3000 N; maximum_pressure <= 2 MPa"
     ),
     _conflict(13, SLIDER, "length", (20.0, 80.0, 1.0), "mm", "maximum_pressure >= 10 MPa"),
-    _conflict(14, THRUST, "speed", (500.0, 3000.0, 50.0), "rpm", f"{H} >= 30 um; power_loss <= 1000 W"),
-    _conflict(15, THRUST, "load", (5.0, 60.0, 1.0), "kN", f"{H} >= 30 um; specific_load >= 1.5 MPa"),
-    _conflict(16, THRUST, "speed", (500.0, 3000.0, 50.0), "rpm", f"{H} >= 60 um"),
-    _conflict(17, THRUST, "taper", (10.0, 80.0, 2.0), "um", "friction_torque <= 5 N*m"),
+    _conflict(14, SLIDER, "sliding_speed", (2.0, 20.0, 0.5), "m/s", "load >= 3500 N; power_loss <= 220 W"),
+    _conflict(15, LARGE, "radial_load", (20.0, 120.0, 2.0), "kN", f"{H} >= 6 um; maximum_pressure >= 60 MPa"),
+    _conflict(16, SLIDER, "inlet_film", (35.0, 90.0, 1.0), "um", "load >= 6000 N"),
+    _conflict(17, SLIDER, "width", (30.0, 80.0, 1.0), "mm", "load >= 3000 N; maximum_pressure <= 2 MPa"),
     _conflict(18, PETROV, "bearing_width", (30.0, 120.0, 2.0), "mm", "power_loss <= 20 W"),
     _conflict(19, PETROV, "speed", (500.0, 6000.0, 100.0), "rpm", "friction_torque <= 0.01 N*m"),
     _conflict(20, PETROV, "bearing_width", (30.0, 120.0, 2.0), "mm", "power_loss <= 100 W; width_ratio >= 2"),

@@ -12,7 +12,7 @@ from pydantic_core import to_json
 from app.api.answers import answer_of
 from app.calculations.bodies import CalculationRequest
 from app.calculations.operations import OPERATIONS, Question
-from app.http.pace import PiecesResponse
+from app.http.connections import PiecesResponse
 from app.pool.cost import EXPENSIVE
 from app.presentation.units import System
 from app.schemas.problems import Problem

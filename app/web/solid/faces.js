@@ -4,6 +4,8 @@ import { units } from "../shared/api.js";
 import { isolated } from "../shared/isolated.js";
 
 const NOT_MARKED = "This face carries no parameter of its own.";
+const STILL = 4; // px
+const PICKED = 60; // time in which Plotly finds the point under the pointer [ms]
 const words = (name) => name.replaceAll("_", " ");
 
 // Offer the parameters of a drawn part. `bodies` are those of the figure, in the order of its traces, with the parameters of each
@@ -16,7 +18,21 @@ export function startFaces(place, figure, bodies, highlight) {
   if (!fold.hidden) return chosenAgain(fold);
   fold.hidden = false;
   fold.querySelector("[data-face-list]").replaceChildren(...names.flatMap((name) => [button(fold, name), " "]));
-  figure.on?.("plotly_click", ({ points: [point] }) => clicked(fold, point));
+  watchClicks(figure, (point) => clicked(fold, point));
+}
+
+// Call `act` with the point under the pointer if it is pressed and released without moving. Plotly's own click event also comes
+// with every frame of a drag, which turns the part.
+function watchClicks(figure, act) {
+  let under, down;
+  for (const event of ["plotly_hover", "plotly_click"]) figure.on?.(event, ({ points: [point] }) => (under = point));
+  figure.on?.("plotly_unhover", () => (under = undefined));
+  figure.addEventListener("pointerdown", ({ clientX, clientY }) => (down = [clientX, clientY]), true);
+  figure.addEventListener("pointerup", ({ clientX, clientY }) => {
+    const isStill = down && Math.hypot(clientX - down[0], clientY - down[1]) < STILL;
+    down = undefined;
+    if (isStill) setTimeout(() => under && act(under), PICKED);
+  }, true);
 }
 
 function button(fold, name) {

@@ -66,15 +66,15 @@ def test_no_point_of_the_grid_is_better_at_the_reference_level(number):
 
 
 def infeasible(number):
-    """A bearing of the ensemble whose film and loss cannot both be met, by a share of their trade-off."""
+    """A bearing of the ensemble with a film and a loss that can each be met, but not both."""
     one, raw = bearing(number)
     names, ends = ("diameter", "width", "clearance"), np.array(within(one))
     rows = ends[:, 0] + sobol_sequence(3, number, 0, 2048) * (ends[:, 1] - ends[:, 0])
     film, loss, _ = rows_of(raw, names, rows, {"film": "map"})
     random = np.random.default_rng(number)
-    limit = float(np.quantile(film, random.uniform(0.5, 0.95)))
-    least = float(loss[film >= limit].min())
-    return one, raw, limit, least * random.uniform(0.5, 0.9), (film, loss, rows)
+    limit = float(np.quantile(film, random.uniform(0.7, 0.95)))
+    alone, least = float(loss.min()), float(loss[film >= limit].min())
+    return one, raw, limit, alone + random.uniform(0.2, 0.8) * (least - alone), (film, loss, rows)
 
 
 def body_of(one, requirements):
@@ -93,12 +93,12 @@ def test_an_infeasible_bearing_names_its_conflict_and_a_relaxation_that_is_feasi
         f"film.minimum_film_thickness >= {film!r} m",
         "film.minimum_film_thickness >= 0.01 um",
         f"film.power_loss <= {loss!r} W",
-        "film.film_temperature <= 450 degC",
+        "film.maximum_pressure <= 100 GPa",
     ]
     answer = answered(raw, **body_of(one, texts))
     assert answer.state == "infeasible"
     names = dict(zip([each.name for each in answer.requirements], texts, strict=True))
-    assert [names[each] for each in answer.conflict.requirements] == [texts[0], texts[2]]
+    assert sorted(names[each] for each in answer.conflict.requirements) == sorted([texts[0], texts[2]])
     relaxed = answer.conflict.relaxation
     again = [
         f"{text.rpartition('= ')[0]}= {relaxed.limits[name].value!r} {relaxed.limits[name].unit}"

@@ -13,7 +13,7 @@ from serving import API, problem, serving
 from sleeping import folder_of_sleeper
 from test_workers import eventually
 
-from app.http.pace import Pace, PiecesResponse
+from app.http.connections import Pace, PiecesResponse
 from app.http.strict_requests import StrictRequest
 from app.settings import Settings
 from app.storage.artifacts import ArtifactStore

@@ -61,13 +61,16 @@ SEVERAL = """() => {
   const marks = document.querySelector("[data-faces]").drawn.bodies.flatMap((body) => body.marks);
   return marks.find((own) => own.length > 1);
 }"""
-CLICK = """(parameters) => {
+CLICK = """([parameters, moved]) => {
   const figure = document.querySelector(".solid .js-plotly-plot");
   const { bodies } = document.querySelector("[data-faces]").drawn;
   const wanted = ({ marks }) => marks.findIndex((own) => own.join() === parameters.join());
   const curveNumber = bodies.findIndex((body) => wanted(body) >= 0), body = bodies[curveNumber];
   const pointNumber = wanted(body) + 2 * body.marks.length;
-  figure.acts.plotly_click({ points: [{ curveNumber, pointNumber }] });
+  figure.acts.plotly_hover({ points: [{ curveNumber, pointNumber }] });
+  const pointer = (kind, clientX) => figure.dispatchEvent(new PointerEvent(kind, { clientX, clientY: 9 }));
+  pointer("pointerdown", 5);
+  pointer("pointerup", 5 + moved);
 }"""
 """Click, as Plotly reports it, on a corner of the third instance of a face that carries these parameters."""
 
@@ -79,14 +82,17 @@ def test_a_click_shows_the_parameter_of_a_face_and_offers_its_others(watched, sh
     expect(faces).to_be_visible()
     expect(faces.locator(PANEL)).to_be_hidden()
     carried = page.evaluate(SEVERAL)
-    page.evaluate(CLICK, carried)
+    page.evaluate(CLICK, [carried, 40])  # a drag, which turns the part
+    page.wait_for_timeout(300)
+    expect(faces.locator("[aria-pressed=true]")).to_have_count(0)
+    page.evaluate(CLICK, [carried, 1])
     expect(faces.locator("article")).to_have_attribute("data-face", f"model.{carried[0]}")
     expect(faces.locator("[data-face-list] [aria-pressed=true]")).to_have_text(carried[0].replace("_", " "))
     others = faces.locator(PANEL).locator("[data-parameter]")
     expect(others).to_have_text([name.replace("_", " ") for name in carried[1:]])
     others.first.click()
     expect(faces.locator("article")).to_have_attribute("data-face", f"model.{carried[1]}")
-    page.evaluate(CLICK, [])
+    page.evaluate(CLICK, [[], 0])
     expect(faces.locator(PANEL)).to_have_text("This face carries no parameter of its own.")
     expect(faces.locator("[aria-pressed=true]")).to_have_count(0)
     assert watched.faults() == []
