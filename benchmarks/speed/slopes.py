@@ -22,7 +22,7 @@ class Ratios(NamedTuple):
     one: float
     whole: float
     model: str
-    count: int
+    parameters: int
 
 
 def figures() -> list[Figure]:
@@ -41,7 +41,7 @@ def figures() -> list[Figure]:
             "slopes over all its parameters",
             whole.whole,
             "times",
-            detail=f"{whole.model}, {whole.count} parameters; median {median(r.whole for r in every):.2g}",
+            detail=f"{whole.model}, {whole.parameters} parameters; median {median(r.whole for r in every):.2g}",
         ),
     ]
 
