@@ -76,6 +76,19 @@ def test_the_example_of_templates_from_python_is_right():
         assert eval(text, names) == ast.literal_eval(said[text])
 
 
+def test_the_page_for_users_of_ross_and_opentorsion_is_right():
+    page = (ROOT / "docs" / "howto" / "ross_opentorsion.md").read_text(encoding="utf-8")
+    names = {}
+    for code in blocks(page, "python"):
+        exec(code, names)
+    for name, ours in re.findall(r"`(stiffness_[xy]{2})` (−?[\d.]+)", page):
+        value = getattr(names["bearing"], name).to("MN/m").magnitude
+        assert f"{value:.6f}" == ours.replace("−", "-")
+    frequencies = names["shaft"].natural_frequencies.to("Hz").magnitude[1:]
+    text = ", ".join(f"{f:.2f}" for f in frequencies[:3]) + f" and {frequencies[3]:.2f} Hz"
+    assert f"Both give {text}" in page
+
+
 @pytest.mark.parametrize("cls", list(built_in()), ids=lambda cls: f"{cls.id}_v{cls.version}")
 def test_the_page_of_a_template_is_complete(cls):
     page = templates.page(cls)

@@ -8,13 +8,14 @@ import json
 
 import pytest
 
-from benchmarks.validation.case import numbers
-from benchmarks.validation.cases import CASES
-from benchmarks.validation.comparison import RESULTS, agrees, comparisons, kept
 from benchmarks.validation.gaps import NOT_FOUND
 from benchmarks.validation.page import PAGE, PICTURES, page, pictures
-from benchmarks.validation.reference import KEYS, Uncertainty
+from benchmarks.validation.results import RESULTS, kept
 from templates.door import built_in
+from templates.validate.case import numbers
+from templates.validate.cases import CASES
+from templates.validate.comparison import agrees, comparisons
+from templates.validate.reference import KEYS, Uncertainty
 
 EACH = pytest.mark.parametrize(
     "case",

@@ -6,11 +6,11 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from benchmarks.validation.case import Case, Numbers
-from benchmarks.validation.cases import CASES
-from benchmarks.validation.comparison import Comparison, agrees, comparisons, farthest
 from benchmarks.validation.gaps import NO_MODEL, NOT_FOUND, NOT_OBTAINED
 from benchmarks.validation.plot import svg
+from templates.validate.case import Case, Numbers
+from templates.validate.cases import CASES
+from templates.validate.comparison import Comparison, agrees, comparisons, farthest
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGE = DOCS / "validation.md"

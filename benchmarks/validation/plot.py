@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from html import escape
 from math import floor, log10
 
-from benchmarks.validation.case import Case
-from benchmarks.validation.comparison import Comparison
+from templates.validate.case import Case
+from templates.validate.comparison import Comparison
 
 WIDTH, HEIGHT = 360, 220
 LEFT, RIGHT, TOP, BOTTOM = 58, 12, 26, 40

@@ -202,7 +202,7 @@ class OilFilmCycle(FedBearing):
 
     eta: Array = given("mPa*s", "dynamic viscosity", gt=0)
     h_lim: Array = given("um", "permissible film", symbol=r"h_{lim}", alternative=True, ge=0)
-    p_lim: Array = given("MPa", "permissible pressure", symbol=r"p_{lim}", alternative=True, gt=0)
+    p_max_lim: Array = given("MPa", "permissible pressure", symbol=r"p_{max,lim}", alternative=True, gt=0)
 
     @require("groove_width", warning="unused_input", remedy="choose level `mobility_grooved` or `supplied`")
     def groove_counts(self) -> Truth:
@@ -235,7 +235,7 @@ class OilFilmCycle(FedBearing):
     )
     def pressure_is_permitted(self) -> Truth:
         """The largest pressure is at most the permissible pressure of the bearing material."""
-        return below(self.p_lim, lambda: self.p_max)
+        return below(self.p_max_lim, lambda: self.p_max)
 
     def ladder(self) -> tuple[str, ...]:
         """Return the levels that model the oil supply; level supplied only if there is a groove or hole."""

@@ -2,8 +2,8 @@
 
 import json
 
-from benchmarks.validation.case import numbers
-from benchmarks.validation.reference import FOLDER, reference
+from templates.validate.case import numbers
+from templates.validate.reference import FOLDER, reference
 
 INPUTS = json.loads((FOLDER / "nine_cylinder_set.json").read_text(encoding="utf-8"))["inputs"]
 PRINTED = numbers(reference("nine_cylinder_set.csv").rows[0])

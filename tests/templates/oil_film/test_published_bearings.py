@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from benchmarks.validation.reference import reference
 from templates.core.language.evaluate import evaluate
 from templates.oil_film.oil_film_cycle_v1 import OilFilmCycle
+from templates.validate.reference import reference
 
 
 class TestLoadDiagram:

@@ -2,17 +2,11 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
-from pathlib import Path
 from statistics import median
 
-from benchmarks.validation.case import Case, Numbers
-from benchmarks.validation.reference import Column
-
-RESULTS = Path(__file__).parents[1] / "results" / "validation.json"
+from templates.validate.case import Case, Numbers
+from templates.validate.reference import Column
 
 
 @dataclass(frozen=True)
@@ -74,8 +68,11 @@ def farthest(compared: list[Comparison]) -> Comparison:
     return max(compared, key=lambda comparison: max(comparison.shares))
 
 
-@cache
-def kept() -> Mapping[str, Numbers]:
-    """Return our values as they were last calculated, by case."""
-    results: Mapping[str, Numbers] = json.loads(RESULTS.read_text(encoding="utf-8"))
-    return results
+def row(case: Case, found: Numbers) -> str:
+    """Return the result of a case in one line: the number that is farthest from the published one."""
+    compared = comparisons(case, found)
+    shown = farthest(compared)
+    n = shown.worst
+    verdict = "agrees " if agrees(compared) else "DIFFERS"
+    allowed = f"{shown.theirs[n]:.5g} ± {shown.uncertainties[n]:.2g}"
+    return f"{case.key:32} {verdict} {shown.column.name:24} ours {shown.ours[n]:.5g}, theirs {allowed}"

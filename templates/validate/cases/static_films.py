@@ -5,8 +5,8 @@ from __future__ import annotations
 from functools import partial
 from math import pi
 
-from benchmarks.validation.case import Case, by_row
-from benchmarks.validation.films import (
+from templates.validate.case import Case, by_row
+from templates.validate.films import (
     DIAMETER,
     PSI,
     SPEED,

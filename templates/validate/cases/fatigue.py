@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from benchmarks.validation.by_template import by_template
-from benchmarks.validation.case import Case, by_row
 from templates import get
+from templates.validate.by_template import by_template
+from templates.validate.case import Case, by_row
 
 NOT_USED: dict[str, Any] = {"fatigue_strength_coefficient": "900 MPa", "fatigue_strength_exponent": -0.09}
 """Basquin's line, which the safety factor for endless life does not use."""

@@ -7,11 +7,11 @@ from math import sqrt
 
 import numpy as np
 
-from benchmarks.validation.by_template import by_template
-from benchmarks.validation.case import Case, Numbers, by_row, numbers
-from benchmarks.validation.films import SPLIT_20, value
-from benchmarks.validation.reference import Row
 from templates import get
+from templates.validate.by_template import by_template
+from templates.validate.case import Case, Numbers, by_row, numbers
+from templates.validate.films import SPLIT_20, value
+from templates.validate.reference import Row
 
 BIG_END, SUPPORT = (47.8, 17.2), (54.0, 25.0)
 """Diameter and width [mm] of the bearings of Sander's rig."""

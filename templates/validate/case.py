@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
-from benchmarks.validation.reference import Column, Reference, Row, reference
+from templates.validate.reference import Column, Reference, Row, reference
 
 Kind = Literal["measurement", "printed example", "printed table", "other program"]
 Numbers = Mapping[str, Sequence[float]]

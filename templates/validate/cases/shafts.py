@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.validation.case import Case, Numbers
-from benchmarks.validation.reference import Column, Row, reference
 from templates import get
+from templates.validate.case import Case, Numbers
+from templates.validate.reference import Column, Row, reference
 
 TONE: dict[str, Any] = {
     "excited_inertias": [1],

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from benchmarks.validation.case import Numbers
-from benchmarks.validation.reference import Reference, Row, reference
 from templates import get
+from templates.validate.case import Numbers
+from templates.validate.reference import Reference, Row, reference
 
 
 def by_template(

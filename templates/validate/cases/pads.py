@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from benchmarks.validation.by_template import by_template
-from benchmarks.validation.case import Case
+from templates.validate.by_template import by_template
+from templates.validate.case import Case
 
 PADS = (
     Case(
