@@ -5,6 +5,8 @@ import math
 import pytest
 from serving import API, created, faults
 
+from templates.core.units.units import unit
+
 DESIGNS = f"{API}/designs"
 N = 5000 * 2 * math.pi / 60
 FILM = {
@@ -115,10 +117,11 @@ class TestBothReadings:
             assert own == pytest.approx(same * factor**power, rel=1e-9)
 
     def used(self, http, design, name, relation, **parameters):
-        """The value of an input that a relation gives, whether or not the film can be calculated with it."""
+        """The value [SI] of an input that a relation gives, even if the film cannot be calculated with it."""
         answer = previewed(http, design, parameters={**parameters, "own": relation})
         assert answer.status_code == 200, answer.text
-        return answer.json()["parameters"]["own"]["value"]
+        own = answer.json()["parameters"]["own"]
+        return unit(own["unit"]).to_si(own["value"])
 
     def test_it_is_told_behind_a_parameter_too(self, http, design):
         steps = {"film": {"inputs": {"radial_load": "= force"}}}
