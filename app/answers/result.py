@@ -47,6 +47,8 @@ from templates.core.criteria.judgement import verdict_sentence
 from templates.core.units.quantity import read_any
 from templates.core.units.units import difference_of, unit
 
+SLACK = 1e-3
+"""Share of a relaxed limit that is added, so that a search finds the few points that meet it."""
 DIGITS = 3
 """Significant digits of a relaxed limit, which is rounded to the side that is easier to meet."""
 MOST_SLOPES = 10
@@ -341,7 +343,8 @@ def _difference(si: float, criterion: Criterion) -> Quantity:
 
 def _eased(si: float, criterion: Criterion) -> Quantity:
     """Return a limit with few digits, rounded to the side that is easier to meet."""
-    value = float(unit(criterion.unit).from_si(si))
+    side = -1.0 if criterion.sign == ">=" else 1.0
+    value = float(unit(criterion.unit).from_si(si + side * SLACK * abs(si)))
     if not value:
         return Quantity(value=0.0, unit=criterion.unit)
     step = 10.0 ** (math.floor(math.log10(abs(value))) - DIGITS + 1)
