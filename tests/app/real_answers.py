@@ -125,7 +125,7 @@ def recorded(team):
     _model(service)
     _worksheet(service)
     _people(service)
-    for operation in ("GET /healthz", "GET /readyz", "GET /audit", "GET /audit/head", "GET /library"):
+    for operation in ("GET /healthz", "GET /readyz", "GET /audit", "GET /audit/head", "GET /library", "GET /stamp-keys"):
         service.ask(operation)
     service.ask("GET /problems/{slug}", "/../../problems/unreachable")
     return service.answers

@@ -12,10 +12,15 @@ def ended(http, answer):
     """The page behind an answer once its calculation has ended; a job keeps its page in its address."""
 
     def page():
-        shown = http.get(answer.url)
-        return shown if "data-progress " not in shown.text else None
+        shown = http.get(answer.url, follow_redirects=True)
+        return None if is_calculating(shown) else shown
 
-    return answer if "data-progress " not in answer.text else until(page, seconds=patient(60))
+    return until(page, seconds=patient(60)) if is_calculating(answer) else answer
+
+
+def is_calculating(page):
+    """Whether a page shows the progress of its answer; the page of a design shows that of its solids."""
+    return page.url.path == PAGE and "data-progress " in page.text
 
 
 def shown(http, **typed):
@@ -37,8 +42,7 @@ def test_the_bearing_of_the_paper_is_found_and_saved(http):
     assert "mass_conserving" in page.text
     hidden = dict(re.findall(r'<input type="hidden" name="([^"]+)" value="([^"]*)">', page.text))
     saved = ended(http, http.post(PAGE, data=hidden, follow_redirects=True))
-    place = saved.headers.get("location") or saved.url.path
-    design = http.get(f"/api/v1{place}").json()
+    design = http.get(f"/api/v1{saved.url.path}").json()
     width = float(design["steps"]["film"]["inputs"]["bearing_width"].removesuffix(" mm"))
     assert (2 * width) % 1 == 0
     film = next(one for one in design["results"]["criteria"] if one["name"].endswith("thickness_least"))
