@@ -29,7 +29,7 @@ def test_slugs_and_titles_are_distinct():
 
 def test_only_a_fault_of_the_program_is_a_500():
     team = {"files-unreachable", "program-missing"}
-    storage = {"storage", "artifact-damaged", "database-damaged", "rebuilding"}
+    storage = {"storage", "artifact-damaged", "database-damaged", "rebuilding", "disk-full"}
     assert {kind.slug for kind in KINDS.values() if kind.status >= 500} == {
         "internal",
         "stopping",
