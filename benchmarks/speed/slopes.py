@@ -41,7 +41,8 @@ def figures() -> list[Figure]:
             "slopes over all its parameters",
             whole.whole,
             "times",
-            detail=f"{whole.model}, {whole.parameters} parameters; median {median(r.whole for r in every):.2g}",
+            detail=f"{whole.model}, {whole.parameters} parameters; "
+            f"median {median(r.whole for r in every):.2g}",
         ),
     ]
 

@@ -125,8 +125,8 @@ def recorded(team):
     _model(service)
     _worksheet(service)
     _people(service)
-    for operation in ("GET /healthz", "GET /readyz", "GET /audit", "GET /audit/head", "GET /library", "GET /stamp-keys"):
-        service.ask(operation)
+    for path in ("/healthz", "/readyz", "/audit", "/audit/head", "/library", "/stamp-keys"):
+        service.ask(f"GET {path}")
     service.ask("GET /problems/{slug}", "/../../problems/unreachable")
     return service.answers
 
