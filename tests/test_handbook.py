@@ -31,7 +31,7 @@ def blocks(text, kind):
 
 def test_the_readme_is_short_and_has_the_two_commands():
     assert len(README.split()) <= 720
-    assert tuple(block.strip() for block in blocks(README, "sh")) == COMMANDS
+    assert tuple(block.strip() for block in blocks(README, "sh"))[:2] == COMMANDS
     assert "No licence has been chosen" in README
 
 

@@ -49,6 +49,7 @@ GROWING = {
     "EvaluatedValues",
     "Features",
     "Definition",
+    "LevelTally",
 }
 """Records that one function fills step by step before it returns them."""
 

@@ -40,7 +40,7 @@ FEWEST_ROWS = 24
 
 
 @dataclass
-class Use:
+class LevelTally:
     """The rows calculated at some levels, and their time [s]."""
 
     levels: Levels
@@ -48,7 +48,7 @@ class Use:
     seconds: float = 0.0
 
 
-@dataclass
+@dataclass(frozen=True)
 class RequestColumns:
     """Calculates the objective and the requirements of a request.
 
@@ -79,7 +79,7 @@ class RequestColumns:
         """Return the columns of places that are choices."""
         return [n for n, place in enumerate(self.places) if place.options]
 
-    def at(self, use: Use) -> Answer:
+    def at(self, use: LevelTally) -> Answer:
         """Return the function that calculates rows at some levels, and counts them."""
 
         def source(chosen: Chosen, inputs: Array) -> Columns:
@@ -90,7 +90,7 @@ class RequestColumns:
 
         return lambda rows: self.reduced(rows, source)
 
-    def explored(self, use: Use) -> Answer:
+    def explored(self, use: LevelTally) -> Answer:
         """Return the function that a search calls: response surfaces if they are good enough.
 
         Otherwise it calculates each row at the coarse levels.
@@ -160,7 +160,7 @@ class RequestColumns:
     def _first(self) -> Chosen:
         return tuple(0 for _ in self.choices)
 
-    def _calculated(self, chosen: Chosen, inputs: Array, use: Use) -> Columns:
+    def _calculated(self, chosen: Chosen, inputs: Array, use: LevelTally) -> Columns:
         start = process_time()
         engine = self.engine_of(chosen)
         rows = {self.places[n].reference: inputs[:, k] for k, n in enumerate(self.numbers)}
@@ -177,7 +177,7 @@ class RequestColumns:
         reasons = {row: f"{one.place}: {one.detail}" for row, one in table.refusals.items()}
         return Columns(goal[:, None], values, limits, low, high, reasons, seconds, is_known=certain == 1)
 
-    def error_at(self, at: Array, use: Use) -> float | None:
+    def error_at(self, at: Array, use: LevelTally) -> float | None:
         """Return the largest relative error of the objective at a point; None if one is unknown."""
         if self.objective is None:
             return None
@@ -185,7 +185,7 @@ class RequestColumns:
         errors = self._errors.get(self.inputs(at[None])[0].tobytes())
         return float(np.max(errors)) if errors is not None and np.isfinite(errors).all() else None
 
-    def _surface(self, chosen: Chosen, use: Use) -> ResponseSurface | None:
+    def _surface(self, chosen: Chosen, use: LevelTally) -> ResponseSurface | None:
         """Return the surface through rows at the coarse levels, if it reproduces others well enough."""
         dimensions, engine = len(self.numbers), self.engine_of(chosen)
         wanted = [self.objective] if self.objective else []

@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from app.answers.bodies import AnswerIn
-from app.answers.columns import Chosen, Levels, RequestColumns, Use
+from app.answers.columns import Chosen, Levels, LevelTally, RequestColumns
 from app.answers.places import FreePlace, PlaceReader, choice_of, form_faults
 from app.answers.requirements import Requirements, named, requirements
 from app.catalogue.catalogues import Catalogues
@@ -151,7 +151,7 @@ class Request:
         columns = self._columns(names)
         middle = np.full((1, len(self.free)), 0.5)
         rows = columns.problem.space.at(columns.problem.space.snapped(middle))
-        codes = columns.at(Use(self.coarse(names)))(rows).codes(columns.problem)
+        codes = columns.at(LevelTally(self.coarse(names)))(rows).codes(columns.problem)
         return [name for name, code in zip(names, codes, strict=True) if code != NOT_CHECKED]
 
     @cached_property

@@ -10,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from app.answers.columns import Use
+from app.answers.columns import LevelTally
 from app.answers.places import FreePlace
 from app.answers.request import Request
 from app.answers.schemas import (
@@ -61,8 +61,8 @@ class AnswerText:
 
     request: Request
     optimum: Optimum
-    explored: Use
-    confirmed: Use
+    explored: LevelTally
+    confirmed: LevelTally
     revision: int | None
 
     def feasible(self, bindings: Sequence[BindingLimit]) -> DesignAnswer:
@@ -321,7 +321,7 @@ class AnswerText:
                 yield Warning(code="not_the_finest_level", name=name, detail=detail)
 
 
-def _use(use: Use) -> LevelUse:
+def _use(use: LevelTally) -> LevelUse:
     return LevelUse(levels=dict(use.levels), rows=use.rows, seconds=round(use.seconds, 4))
 
 

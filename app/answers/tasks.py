@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from app.answers.bodies import AnswerIn
-from app.answers.columns import Use
+from app.answers.columns import LevelTally
 from app.answers.request import Request
 from app.answers.result import AnswerText
 from app.answers.schemas import DesignAnswer
@@ -26,7 +26,7 @@ def answer_request(task: DesignTask, revision: int | None, text: str) -> DesignA
     """
     request = Request(*task.read(), AnswerIn.model_validate_json(text))
     columns = request.columns
-    explored, confirmed = (Use(levels) for levels in request.levels)
+    explored, confirmed = (LevelTally(levels) for levels in request.levels)
     search = Search(columns.problem, columns.explored(explored), columns.at(confirmed))
     report(0.05, "search at the coarse levels")
     try:

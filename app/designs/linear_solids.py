@@ -42,7 +42,7 @@ Sloped = Callable[[CadModel, frozenset[str]], SolidSlopes]
 """Returns the slopes of a solid over some parameters of its model."""
 
 
-@dataclass
+@dataclass(frozen=True)
 class LinearSolids:
     """The solids of a design at one point, and their measurements in rows beside it.
 
@@ -74,7 +74,8 @@ class LinearSolids:
         nominal = {measure: value for solid in solids for measure, value in solid.nominal.items()}
         columns = {measure: np.full(count, value) for measure, value in nominal.items()}
         for _ in range(MOST_ROUNDS):
-            self.refusals, before = {}, dict(columns)
+            self.refusals.clear()
+            before = dict(columns)
             for solid in solids:
                 columns |= self._changed(solid, {**rows, **columns}, count)
             if all(_agree(columns[measure], before[measure]) for measure in columns):
@@ -114,7 +115,7 @@ class LinearSolids:
         """Return the measurements of one solid in each row."""
         every = parameters_of(solid.model)
         table = self.engine(rows, list(every.values()), levels=self.levels)
-        self.refusals = table.refusals | self.refusals
+        self._refuse(table.refusals)
         changes = {
             name: change
             for name, reference in every.items()
@@ -123,7 +124,7 @@ class LinearSolids:
         if not changes:
             return {measure: np.full(count, value) for measure, value in solid.nominal.items()}
         if isinstance(solid.shape, Refusal):
-            self.refusals = dict.fromkeys(range(count), solid.shape) | self.refusals
+            self._refuse(dict.fromkeys(range(count), solid.shape))
             return {measure: np.full(count, np.nan) for measure in solid.nominal}
         slopes = self.sloped(solid.shape, frozenset(changes)).parameters
         return {
@@ -134,6 +135,11 @@ class LinearSolids:
             )
             for measure, value in solid.nominal.items()
         }
+
+    def _refuse(self, rows: Mapping[int, Refusal]) -> None:
+        """Store the reason for each row that has none yet."""
+        for row, refusal in rows.items():
+            self.refusals.setdefault(row, refusal)
 
     def _part(self, measure: Reference, over: ParameterSlopes, name: str, change: Array) -> Array:
         """Return the change of a measurement with one parameter in each row; NaN where it has no slope."""
@@ -149,7 +155,7 @@ class LinearSolids:
             reason = over.one_sided
         detail = f"{measure} has no slope over {measure.block}.{name}: {reason}"
         refusal = Refusal(str(measure), "no_slope", detail)
-        self.refusals = dict.fromkeys(np.flatnonzero(missing).tolist(), refusal) | self.refusals
+        self._refuse(dict.fromkeys(np.flatnonzero(missing).tolist(), refusal))
         factor = _scale(measure).factor * (slope or 0.0)
         return np.where(missing, np.nan, factor * change)
 

@@ -18,7 +18,7 @@ from types import ModuleType
 
 from benchmarks.mutation import ROOT
 
-NEAREST = 20
+NEAREST = 24
 """Number of test files that are run for a mutated file."""
 VALUES = "tests/test_values.py"
 """A test about all modules, which it finds by their folders."""

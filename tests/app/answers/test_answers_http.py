@@ -1,6 +1,9 @@
 """`POST /answer` over HTTP: origins of designs, files, saving, roles, jobs, refusals."""
 
+import json
+import re
 import time
+from pathlib import Path
 
 import pytest
 from patience import patient, until
@@ -28,6 +31,19 @@ def test_the_example_of_the_interface_is_answered(http):
     assert answer.status_code == 200, answer.text
     assert answer.json()["state"] == "confirmed"
     assert "saved" not in answer.json()
+
+
+def test_the_line_of_the_readme_is_answered(http):
+    """The paper's bearing: a film of at least 3 um, the least power, the width in steps of 0.5 mm."""
+    readme = (Path(__file__).parents[3] / "README.md").read_text(encoding="utf-8")
+    path, body = re.search(
+        r"^curl -s http://127.0.0.1:8000(\S+) --json '(.*)'$", readme, re.MULTILINE
+    ).groups()
+    answer = http.post(path, json=json.loads(body), headers={"Prefer": "wait=60"}).json()
+    assert answer["state"] == "confirmed", answer
+    width = answer["values"]["film.bearing_width"]["value"]
+    assert width["unit"] == "mm"
+    assert 2 * width["value"] == pytest.approx(round(2 * width["value"]))
 
 
 def test_a_saved_design_is_answered_by_its_id_and_stays_as_it_is(http):
