@@ -42,11 +42,15 @@ FIELDS = {
     "outlet": FormField("Oil at the outlet", "87.762 degC", "film.oil_outlet_temperature"),
     "film": FormField("Smallest film at least", "3 um"),
     "width_low": FormField("Width from", "15 mm"),
-    "width_high": FormField("to", "40 mm"),
-    "width_step": FormField("in steps of", "0.5 mm"),
+    "width_high": FormField("Width to", "40 mm"),
+    "width_step": FormField("Width in steps of", "0.5 mm"),
     "clearance_low": FormField("Diametral clearance from", "30 um"),
-    "clearance_high": FormField("to", "120 um"),
+    "clearance_high": FormField("Diametral clearance to", "120 um"),
 }
+
+
+CHOSEN = {WIDTH: "Width", CLEARANCE: "Diametral clearance"}
+"""The values that the service chooses, in words."""
 
 
 def typed_in(texts: Mapping[str, str]) -> dict[str, str]:
@@ -90,6 +94,7 @@ async def find_bearing(request: Request, services: ThePageServices) -> Response:
         request,
         "find_bearing/find_bearing.html",
         fields=FIELDS,
+        chosen=CHOSEN,
         typed=typed,
         answer=reply.answer,
         refusal=reply.refusal,
