@@ -21,7 +21,7 @@ from app.answers.tasks import answer_request
 from app.designs.graph import read_document, resolved
 from app.designs.tasks import DesignTask
 from app.plain import JsonObject
-from benchmarks.sizing import CATALOGUES, FILM, LOSS, Sizing, engine, sizing, space, thickest
+from benchmarks.sizing import CATALOGUES, FILM, LOSS, Sizing, document, engine, sizing, space, thickest
 
 __all__ = ["CATALOGUES", "FILM", "LOSS", "bearing", "within"]
 
@@ -34,21 +34,7 @@ def bearing(number: int, seed: int = 0) -> tuple[Sizing, JsonObject]:
     """Return a random bearing and the document of its design."""
     random = np.random.default_rng([seed, number])
     one = sizing(random, heat=bool(number % 2))
-    diameter = one.diameter_mm
-    width, clearance = diameter * one.width_ratio, diameter * one.clearance_ratio
-    inputs = {
-        "radial_load": f"{one.pressure_MPa * diameter * width!r} N",
-        "bearing_diameter": "= diameter",
-        "bearing_width": "= width",
-        "diametral_clearance": "= clearance",
-        "speed": f"{one.speed_rpm!r} rpm",
-        **one.oil,
-    }
-    return one, {
-        "name": "sizing",
-        "parameters": {"diameter": f"{diameter} mm", "width": f"{width} mm", "clearance": f"{clearance} mm"},
-        "steps": {"film": {"template": "oil_film", "version": 2, "inputs": inputs}},
-    }
+    return one, document(one)
 
 
 def within(one: Sizing) -> list[tuple[float, float]]:

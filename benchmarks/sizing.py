@@ -23,6 +23,7 @@ from app.catalogue.catalogues import Catalogues
 from app.catalogue.discovery import find_templates
 from app.designs.document import Document
 from app.designs.engine.design_engine import DesignEngine
+from app.plain import JsonObject
 from app.reference import Reference
 from app.studies.methods.answers import Answer, Columns, Held, Objective, Problem
 from app.studies.methods.optimise import Optimum, optimise
@@ -88,8 +89,8 @@ def space(of: Sizing) -> Space:
     return Space(tuple(Interval(name, low * x, high * x) for name, x, (low, high) in each))
 
 
-def engine(of: Sizing) -> DesignEngine:
-    """Return the design of a sizing, which has one step."""
+def document(of: Sizing) -> JsonObject:
+    """Return the document of the design of a sizing, which has one step."""
     diameter = of.diameter_mm
     width, clearance = diameter * of.width_ratio, diameter * of.clearance_ratio
     inputs = {
@@ -100,12 +101,18 @@ def engine(of: Sizing) -> DesignEngine:
         "speed": f"{of.speed_rpm!r} rpm",
         **of.oil,
     }
-    raw = {
+    return {
         "name": "sizing",
         "parameters": {"diameter": f"{diameter} mm", "width": f"{width} mm", "clearance": f"{clearance} mm"},
         "steps": {"film": {"template": "oil_film", "version": 2, "inputs": inputs}},
     }
-    return DesignEngine.of(Document.model_validate(raw), CATALOGUES, [Reference(name) for name in NAMES])
+
+
+def engine(of: Sizing) -> DesignEngine:
+    """Return the engine of the design of a sizing."""
+    return DesignEngine.of(
+        Document.model_validate(document(of)), CATALOGUES, [Reference(name) for name in NAMES]
+    )
 
 
 def level(design: DesignEngine, name: str, limit: float) -> Answer:

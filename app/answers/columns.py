@@ -14,7 +14,7 @@ from time import process_time
 
 import numpy as np
 
-from app.answers.places import FreePlace
+from app.answers.places import FreePlace, bounds_of
 from app.answers.requirements import TargetBand
 from app.designs.engine.design_engine import DesignEngine
 from app.reference import Reference
@@ -23,7 +23,7 @@ from app.studies.criteria import JUDGED, SIDES, judged_of
 from app.studies.methods.answers import Answer, Columns, Problem
 from app.studies.methods.points import sobol_sequence
 from app.studies.methods.response_surface import ResponseSurface, fitted
-from app.studies.methods.space import Interval, Values
+from app.studies.methods.space import Values
 from templates.core.arrays import Array, Integers
 
 Levels = Mapping[str, str | None]
@@ -154,10 +154,11 @@ class RequestColumns:
         for column, place in enumerate(self.places):
             if place.reference == size:
                 return rows[:, column]
-        return np.full(len(rows), self.engine_of(self._first).nominal_value(size))
+        return np.full(len(rows), self.engine_of(self.first).nominal_value(size))
 
     @property
-    def _first(self) -> Chosen:
+    def first(self) -> Chosen:
+        """Return the first option of each choice."""
         return tuple(0 for _ in self.choices)
 
     def _calculated(self, chosen: Chosen, inputs: Array, use: LevelTally) -> Columns:
@@ -210,7 +211,7 @@ class RequestColumns:
 
     def _largest_sizes(self, number: int) -> Array:
         """Return the ends of the range of the nominal size of a fit [m]."""
-        rows = np.array([[_range(one)[0] for one in self.places], [_range(one)[1] for one in self.places]])
+        rows = np.transpose([bounds_of(one.variable) for one in self.places])
         return self.sizes(rows, number)
 
     def _of_surface(self, surface: ResponseSurface, inputs: Array) -> Columns:
@@ -249,19 +250,12 @@ def _side_by_side(sides: Sequence[Mapping[str, AnyArray]], names: Sequence[str],
     return np.stack(each, axis=-1)
 
 
-def _range(place: FreePlace) -> tuple[float, float]:
-    variable = place.variable
-    if isinstance(variable, Interval):
-        return variable.low, variable.high
-    return min(variable.values), max(variable.values)
-
-
 def _extremes(place: FreePlace, sizes: Array) -> tuple[float, float]:
     """Return the least and the greatest value [SI] that the engine receives for a place."""
     if place.fits:
         both = np.array([fit.ends(sizes) for fit in place.fits])
         return float(np.nanmin(both)), float(np.nanmax(both))
-    ends = place.ends(np.array(_range(place)), sizes)
+    ends = place.ends(np.array(bounds_of(place.variable)), sizes)
     return float(ends.min()), float(ends.max())
 
 

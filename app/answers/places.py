@@ -18,7 +18,7 @@ from app.studies.methods.space import Interval, Values, Variable
 from app.studies.question import single
 from cad.deep_groove import SIZES
 from templates.core.arrays import Array
-from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_name, unknown_names
+from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_names
 from templates.core.language.intake import option_named
 from templates.core.language.spec import Choice
 from templates.core.units.fits import deviations
@@ -129,7 +129,7 @@ class PlaceReader:
             return self._fitted(name, body, shown)
         variable, grid = _numbers(name, body, shown)
         if body.zone is not None:
-            for end in _ends_of(variable):
+            for end in bounds_of(variable):
                 deviations(body.zone, end)
         return FreePlace(name, variable, shown, zone=body.zone, grid=grid)
 
@@ -258,12 +258,8 @@ def _multiples(name: str, raw: Raw, shown: str, low: float, high: float) -> dict
     return {float(scale.to_si(one)): f"{one:.{DIGITS}g}{suffix}" for one in magnitudes}
 
 
-def _ends_of(variable: Variable) -> tuple[float, float]:
+def bounds_of(variable: Variable) -> tuple[float, float]:
+    """Return the least and the greatest value of a variable."""
     if isinstance(variable, Interval):
         return variable.low, variable.high
     return min(variable.values), max(variable.values)
-
-
-def unknown_place(name: str, places: list[str]) -> Fault:
-    """Return the fault of a free place that the design does not have."""
-    return unknown_name(name, places, "place").within("free")

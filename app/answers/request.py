@@ -211,7 +211,7 @@ class Request:
         unit = sobol_sequence(len(self.free), 1, 0, PROBED)
         rows = columns.problem.space.at(columns.problem.space.snapped(unit))
         inputs = columns.inputs(rows)[:, 0]
-        engine = columns.engine_of(tuple(0 for _ in columns.choices))
+        engine = columns.engine_of(columns.first)
         values = {self.free[n].reference: inputs[:, k] for k, n in enumerate(columns.numbers)}
         wanted = [self.objective] if self.objective else []
         return engine.levels_for(values, wanted, tolerance, criteria=self.required)

@@ -256,7 +256,7 @@ class AnswerText:
     def _unit_of_goal(self) -> str:
         columns = self.request.columns
         assert self.request.objective is not None
-        return columns.engine_of(tuple(0 for _ in columns.choices)).unit(self.request.objective)
+        return columns.engine_of(columns.first).unit(self.request.objective)
 
     def _binding(self, one: BindingLimit) -> BindingRequirement:
         name = self.request.required[one.number]
