@@ -26,7 +26,8 @@ from app.studies.methods.answers import Held, Objective, Problem
 from app.studies.methods.points import sobol_sequence
 from app.studies.methods.space import Space
 from templates.core.criteria.comparison import NOT_CHECKED
-from templates.core.errors import Fault, InvalidInputs, unknown_names
+from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_names
+from templates.core.units.quantity import read_any
 
 CONFIRMED_SECONDS = 30.0
 """Estimated time of a row at the finest levels above which the answer is confirmed at cheaper ones [s]."""
@@ -47,7 +48,7 @@ class Request:
     @cached_property
     def asked(self) -> Requirements:
         """Return the requirements, and the document that has them as criteria."""
-        raise_if(list(_body_faults(self.body)))
+        raise_if(list(body_faults(self.body)))
         document = self.written
         if self.body.others:
             document = changed(document, self.catalogues, self.body.others, "")
@@ -223,7 +224,7 @@ class Request:
         return engine.design.steps(Targets.of(wanted, engine.subjects(names).values()))
 
 
-def _body_faults(body: AnswerIn) -> Iterator[Fault]:
+def body_faults(body: AnswerIn) -> Iterator[Fault]:
     """Yield the faults in a request that show without its design."""
     if not body.free:
         detail = (
@@ -236,7 +237,12 @@ def _body_faults(body: AnswerIn) -> Iterator[Fault]:
         yield Fault(
             "require", "missing", "name a requirement, or omit `require` for all criteria of the design"
         )
-    for name in body.others:
+    for name, raw in body.others.items():
+        try:
+            if not isinstance(raw, str):  # a text may be the word of a choice
+                read_any(raw)
+        except FaultyText as error:
+            yield error.fault(f"{WITH}.{name}")
         if name in body.free:
             yield Fault(f"{WITH}.{name}", "conflict", f"{name} is free; omit its value")
     for name in body.set_aside:

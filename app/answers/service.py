@@ -14,6 +14,7 @@ from uuid import uuid4
 from pydantic_core import from_json
 
 from app.answers.bodies import AnswerIn, FileKind
+from app.answers.request import body_faults
 from app.answers.schemas import DesignAnswer, SavedAnswer
 from app.answers.tasks import answer_request
 from app.catalogue.catalogues import Catalogues
@@ -21,7 +22,7 @@ from app.designs import repository
 from app.designs.document import merge
 from app.designs.errors import DesignError, StaleRevision
 from app.designs.gallery.gallery import GALLERY
-from app.designs.graph import read_document, resolved
+from app.designs.graph import raise_if, read_document, resolved
 from app.designs.questions import settled
 from app.designs.service import Designs, SaveResult, matches
 from app.designs.tasks import DesignTask
@@ -86,8 +87,10 @@ def question_of(
     Raises
     ------
     InvalidInputs
-        If the design is neither an id, nor a name of the gallery, nor a document.
+        If the body has faults that show without its design, or the design is neither an id, nor a name of the
+        gallery, nor a document.
     """
+    raise_if(list(body_faults(body)))
     design, document = _origin(body.design, catalogues)
     rest = body.model_copy(update={"design": ""}).model_dump_json(exclude_unset=True, by_alias=True)
     order = None
